@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "base/unset.h"
 #include "sampler/sampler.h"
-#include "velo/schema.h"
+#include "schema/schema.h"
 #include "velo/setting.h"
 #include "velo/trace.h"
 #include "world/accel/accel.h"
@@ -44,10 +44,7 @@ static json_t *choice(const vlParameter *p, uint32_t value) {
   char name[64];
   snprintf(name, sizeof name, "%ss", vl_setting_keyword(p));
   const vlKindFamily *family = vl_kind_family_find(name);
-  uint32_t count = 0;
-  while (p->choices[count])
-    count++;
-  if (value >= count)
+  if (value >= vl_choice_count(p))
     return json_string("unknown");
   if (family)
     return json_string(family->rows[value]->name ? family->rows[value]->name

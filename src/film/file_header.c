@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "film/file.h"
-#include "schema/member.h"
 #include "schema/schema.h"
 #include "velo/filter_kinds.h"
 #include "velo/schema.h"

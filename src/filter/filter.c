@@ -235,9 +235,9 @@ static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *a
 
 static bool is_valid(const vlPixelFilter *filter) {
   const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, (int)filter->kind);
-  char message[VL_GIVEN_MESSAGE];
+  double wrong;
   for (uint32_t i = 0; row && i < row->parameter_count; i++)
-    if (!vl_parameter_check(&row->parameters[i], filter, row->parameters[i].name, message))
+    if (!vl_parameter_fits(&row->parameters[i], filter, &wrong))
       return false;
   return row != NULL;
 }

@@ -1,10 +1,11 @@
-/* scene/add.c: adds textures and materials: each def is checked by its row, then copied. The
- * same for all defs that have a row. Ids refer only to objects added before, so textures and
+/* scene/add.c: adds textures and materials: each def is checked by its row, then copied. Has
+ * what adding any def needs, too. Ids refer only to objects added before, so textures and
  * mixed materials cannot form a cycle. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/cookie.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "color/named.h"
@@ -16,6 +17,48 @@
 
 bool vl_scene_reject(vlScene *scene, vlSource source, const char *what, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s: %s", what, why);
+}
+
+/* ---- adding ------------------------------------------------------------------------------ */
+
+enum { MAX_OBJECTS = 0x7fffffff };
+
+bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  const vlSource nowhere = {0};
+  if (scene->error.code != VL_OK)
+    return false;
+  if (!def || *(const uint32_t *)def != row->cookie) { /* the first member of each def */
+    return vl_scene_fail(scene, VL_ERROR_ARGUMENT, nowhere, "%s: " VL_BAD_COOKIE, row->thing);
+  }
+  if (*vl_scene_count_of(scene, family) < MAX_OBJECTS)
+    return true;
+  return vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
+}
+
+const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def) {
+  if (!vl_scene_may_add(scene, family, def))
+    return NULL;
+  const vlKindRow *row = vl_scene_def_row(family, def);
+  if (!row)
+    vl_scene_reject(scene, vl_scene_def_source(family, def), vl_scene_rows[family].thing,
+                    "unknown kind");
+  return row;
+}
+
+uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
+  const vlSceneRow *row = &vl_scene_rows[family];
+  char *const members = (char *)scene;
+  size_t *count = vl_scene_count_of(scene, family);
+  if (*count >= MAX_OBJECTS ||
+      !vl_array_reserve(scene->context, members + row->items, members + row->capacity, *count,
+                        row->size, 1)) {
+    vl_scene_fail_memory(scene);
+    return 0;
+  }
+  ++*count;
+  memcpy(vl_scene_at(scene, family, (uint32_t)*count), def, row->size);
+  return (uint32_t)*count;
 }
 
 /* ---- what a row describes ---------------------------------------------------------------- */
@@ -100,6 +143,14 @@ static bool refuse(const Take *t, const vlParameter *p, const char *why) {
                        vl_parameter_label(p), why);
 }
 
+static bool refuse_number(const Take *t, const vlParameter *p, double number) {
+  char name[200];
+  char message[VL_GIVEN_MESSAGE];
+  snprintf(name, sizeof name, "%s: parameter \"%s\"", t->what, vl_parameter_label(p));
+  vl_parameter_complain(p, name, number, message);
+  return vl_scene_fail(t->scene, VL_ERROR_SCENE, t->source, "%s", message);
+}
+
 static bool take_texture(const Take *t, const vlParameter *p, vlTextureId id, bool spectrum) {
   if (!id.index)
     return true;
@@ -164,17 +215,14 @@ static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool 
 bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum,
                  vlSource source, const char *what) {
   const Take t = {scene, source, what};
-  char name[200];
-  char message[VL_GIVEN_MESSAGE];
+  double wrong;
   VL_EACH_PARAMETER(p, row) {
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue;
     if (!take_parameter(&t, p, def, spectrum))
       return false;
-    snprintf(name, sizeof name, "%s: parameter \"%s\"", what, vl_parameter_label(p));
-    if (vl_parameter_check(p, def, name, message))
-      continue;
-    return vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s", message);
+    if (!vl_parameter_fits(p, def, &wrong))
+      return refuse_number(&t, p, wrong);
   }
   return true;
 }

@@ -156,47 +156,6 @@ const void *vl_scene_item(const vlScene *scene, vlSceneFamily family, uint32_t i
   return vl_scene_has(scene, family, index) ? vl_scene_at(unchanged, family, index) : NULL;
 }
 
-/* ---- adding ------------------------------------------------------------------------------ */
-
-enum { MAX_OBJECTS = 0x7fffffff };
-
-bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def) {
-  const vlSceneRow *row = &vl_scene_rows[family];
-  const vlSource nowhere = {0};
-  if (scene->error.code != VL_OK)
-    return false;
-  if (!def || *(const uint32_t *)def != row->cookie) { /* the first member of each def */
-    return vl_scene_fail(scene, VL_ERROR_ARGUMENT, nowhere, "%s: " VL_BAD_COOKIE, row->thing);
-  }
-  if (*vl_scene_count_of(scene, family) < MAX_OBJECTS)
-    return true;
-  return vl_scene_fail(scene, VL_ERROR_SCENE, nowhere, "too many objects");
-}
-
-const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def) {
-  if (!vl_scene_may_add(scene, family, def))
-    return NULL;
-  const vlKindRow *row = vl_scene_def_row(family, def);
-  if (!row)
-    vl_scene_reject(scene, vl_scene_def_source(family, def), vl_scene_rows[family].thing,
-                    "unknown kind");
-  return row;
-}
-
-uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
-  const vlSceneRow *row = &vl_scene_rows[family];
-  size_t *count = vl_scene_count_of(scene, family);
-  if (*count >= MAX_OBJECTS ||
-      !vl_array_reserve(scene->context, member(scene, row->items), member(scene, row->capacity),
-                        *count, row->size, 1)) {
-    vl_scene_fail_memory(scene);
-    return 0;
-  }
-  ++*count;
-  memcpy(vl_scene_at(scene, family, (uint32_t)*count), def, row->size);
-  return (uint32_t)*count;
-}
-
 /* ---- defs -------------------------------------------------------------------------------- */
 
 int vl_scene_def_kind(vlSceneFamily family, const void *def) {

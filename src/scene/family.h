@@ -42,8 +42,8 @@ vlSource vl_scene_def_source(vlSceneFamily family, const void *def);
 /* The name of a def; null: it has none. */
 const char *vl_scene_def_name(vlSceneFamily family, const void *def);
 
-/* For functions that add an object. Whether one more can be added: the scene has no error, the
- * def is not null, and its cookie is right. Otherwise it reports the reason. */
+/* For functions that add an object (add.c). Whether one more can be added: the scene has no
+ * error, the def is not null, and its cookie is right. Otherwise it reports the reason. */
 bool vl_scene_may_add(vlScene *scene, vlSceneFamily family, const void *def);
 /* The same for defs of kinds. Returns the kind's row; null: it cannot be added (reported). */
 const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const void *def);

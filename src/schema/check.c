@@ -1,41 +1,16 @@
 /* schema/check.c: checks a value by the row of its parameter or setting: one that somebody
  * gave, or a member of a def. All messages about values of rows are written here: the name,
  * what it must be, the value, the nearest name. */
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
 #include "base/unset.h"
-#include "schema/member.h"
 #include "schema/schema.h"
 #include "velo/setting.h"
 
 /* ---- what a value must be ---------------------------------------------------------------- */
-
-static bool has_range(const vlParameter *row) {
-  return (row->low != 0 || row->high != 0) && !(row->flags & VL_PARAMETER_CLAMPED);
-}
-
-static double low_of(const vlParameter *row) {
-  if (row->type == VL_PARAMETER_COUNT && !(has_range(row) && row->low > 0))
-    return 0;
-  return has_range(row) ? row->low : (double)-INFINITY;
-}
-
-static double high_of(const vlParameter *row) {
-  bool counts = row->type == VL_PARAMETER_COUNT;
-  if (counts && !(has_range(row) && row->high < UINT32_MAX))
-    return UINT32_MAX;
-  return has_range(row) ? row->high : (double)INFINITY;
-}
-
-/* Whether the member that holds the number is a float. */
-static bool is_single(const vlParameter *row) {
-  return row->type != VL_PARAMETER_DOUBLE && row->type != VL_PARAMETER_DOUBLE3 &&
-         row->type != VL_PARAMETER_COUNT;
-}
 
 /* Writes a whole number without an exponent, others with up to 6 digits: angles in degrees are
  * rounded. */
@@ -51,12 +26,12 @@ static void put_number_rule(const vlParameter *row, double factor, char *rule, s
   const char *const thing = row->type == VL_PARAMETER_COUNT ? "whole number" : "number";
   char low[40];
   char high[40];
-  put_number(low, low_of(row) / factor);
-  put_number(high, high_of(row) / factor);
+  put_number(low, vl_parameter_low(row) / factor);
+  put_number(high, vl_parameter_high(row) / factor);
   bool above = row->flags & VL_PARAMETER_ABOVE_LOW;
   bool below = row->flags & VL_PARAMETER_BELOW_HIGH;
-  bool has_low = isfinite(low_of(row));
-  bool has_high = isfinite(high_of(row));
+  bool has_low = isfinite(vl_parameter_low(row));
+  bool has_high = isfinite(vl_parameter_high(row));
   if (has_low && has_high && !above && !below)
     snprintf(rule, size, "a %s from %s to %s", thing, low, high);
   else if (has_low && has_high)
@@ -104,26 +79,6 @@ static void put_rule(const vlParameter *row, double factor, char *rule, size_t s
 
 /* ---- whether it is that ------------------------------------------------------------------ */
 
-/* Whether a number in the def's unit is finite (or may be infinite, or unset), whole if it must
- * be, and in range. */
-static bool in_range(const vlParameter *row, double x) {
-  if ((row->flags & VL_PARAMETER_UNSET) && vl_is_unset(x))
-    return true;
-  if (isnan(x))
-    return false;
-  if (isinf(x))
-    return row->flags & VL_PARAMETER_INFINITE && (x > 0 || isinf(low_of(row)));
-  if (is_single(row) && fabs(x) > (double)FLT_MAX)
-    return false;
-  if (row->type == VL_PARAMETER_COUNT && x != floor(x))
-    return false;
-  double low = low_of(row);
-  double high = high_of(row);
-  if (row->flags & VL_PARAMETER_ABOVE_LOW && has_range(row) ? !(x > low) : !(x >= low))
-    return false;
-  return row->flags & VL_PARAMETER_BELOW_HIGH && has_range(row) ? x < high : x <= high;
-}
-
 /* Compares letters and digits only, whatever their case: "off-axis" is "OFF_AXIS". */
 static bool same_word(const char *a, const char *b) {
   for (;; a++, b++) {
@@ -157,7 +112,7 @@ static bool fits_number(const vlParameter *row, const vlGiven *given, double num
   if (given->kind == VL_GIVEN_NOTHING)
     return row->flags & VL_PARAMETER_UNSET;
   /* A NaN that somebody gives is a wrong number, also if its bits are those of VL_UNSET. */
-  return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && in_range(row, number);
+  return given->kind == VL_GIVEN_NUMBER && !isnan(given->number) && vl_number_fits(row, number);
 }
 
 static bool fits(const vlParameter *row, const vlGiven *given, double factor, double *number) {
@@ -204,13 +159,6 @@ static void put_value(const vlParameter *row, const vlGiven *given, char *value,
   }
 }
 
-static uint32_t count_of(const char *const *choices) {
-  uint32_t n = 0;
-  while (choices && choices[n])
-    n++;
-  return n;
-}
-
 static void put_near(const char *name, const char *const *names, size_t count,
                      const char *prefix, char *text, size_t size) {
   const char *near = vl_near_name(name, names, count);
@@ -231,7 +179,7 @@ static void put_wrong(const vlParameter *row, const char *name, const vlGiven *g
     snprintf(rule + strlen(rule), sizeof rule - strlen(rule), ", or nothing");
   put_value(row, given, value, sizeof value);
   if (row->type == VL_PARAMETER_CHOICE && given->kind == VL_GIVEN_TEXT)
-    put_near(given->text, row->choices, count_of(row->choices), "", near, sizeof near);
+    put_near(given->text, row->choices, vl_choice_count(row), "", near, sizeof near);
   snprintf(message, size, "%s must be %s; it is %s%s", name, rule,
            given->shown ? given->shown : value, near);
 }
@@ -270,31 +218,23 @@ void vl_unknown_name(const char *thing, const char *prefix, const char *name,
 
 /* ---- members of defs --------------------------------------------------------------------- */
 
-static bool check_number(const vlParameter *p, double x, const char *name,
-                         char message[VL_GIVEN_MESSAGE]) {
-  if (p->type == VL_PARAMETER_CHOICE ? x >= 0 && x < count_of(p->choices) : in_range(p, x))
-    return true;
+void vl_parameter_complain(const vlParameter *p, const char *name, double wrong,
+                           char message[VL_GIVEN_MESSAGE]) {
   double factor = p->factor != 0 ? p->factor : 1;
-  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = x / factor, .factor = factor};
-  put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
-  return false;
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = wrong / factor, .factor = factor};
+  if (vl_member_types[p->type].text)
+    snprintf(message, VL_GIVEN_MESSAGE, "%s is missing", name);
+  else
+    put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
 }
 
 bool vl_parameter_check(const vlParameter *p, const void *def, const char *name,
                         char message[VL_GIVEN_MESSAGE]) {
-  const vlMemberType *t = &vl_member_types[p->type];
-  const void *at = (const char *)def + p->offset;
-  double number;
-  if (t->text && p->flags & VL_PARAMETER_REQUIRED && !*(const char *const *)at) {
-    snprintf(message, VL_GIVEN_MESSAGE, "%s is missing", name);
-    return false;
-  }
-  if (t->spectral)
-    return !vl_parameter_number(p, def, &number) || check_number(p, number, name, message);
-  for (int i = 0; i < t->numbers && !vl_member_texture(t, at); i++)
-    if (!check_number(p, vl_member_number(t, at, i), name, message))
-      return false;
-  return true;
+  double wrong;
+  if (vl_parameter_fits(p, def, &wrong))
+    return true;
+  vl_parameter_complain(p, name, wrong, message);
+  return false;
 }
 
 bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const void *part,

@@ -1,7 +1,8 @@
 /* schema/schema.c: the families of kinds; finds rows by name and applies their defaults; the
- * vl_default_*_def functions of scenes and of an image's settings. Defaults of scenes are
- * pbrt-v4's, since pbrt files leave most parameters out. Also reads and writes the members of a
- * def by their rows. */
+ * vl_default_*_def functions of scenes. Defaults of scenes are pbrt-v4's, since pbrt files
+ * leave most parameters out. Also reads and writes the members of a def by their rows, and
+ * tells whether a value fits its row. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,15 +11,9 @@
 #include "base/unset.h"
 #include "color/color.h"
 #include "color/named.h"
-#include "schema/member.h"
 #include "schema/schema.h"
-#include "velo/filter_kinds.h"
-#include "velo/load.h"
-#include "velo/render.h"
-#include "velo/sampler.h"
 #include "velo/setting.h"
 #include "velo/texture.h"
-#include "velo/tracer.h"
 
 static const vlKindFamily *const families[] = {
     &vl_material_family, &vl_texture_family, &vl_light_family,        &vl_emission_family,
@@ -69,6 +64,66 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name) {
 const char *vl_parameter_label(const vlParameter *p) {
   return p->name ? p->name : vl_setting_keyword(p);
 }
+
+/* ---- how members are stored -------------------------------------------------------------- */
+
+_Static_assert(sizeof(vlWrap) == sizeof(int), "choices are stored as int");
+
+static double get_bool(const void *at, int i) {
+  return ((const bool *)at)[i];
+}
+static void put_bool(void *at, int i, double number) {
+  ((bool *)at)[i] = number != 0;
+}
+static double get_count(const void *at, int i) {
+  return ((const uint32_t *)at)[i];
+}
+static void put_count(void *at, int i, double number) {
+  ((uint32_t *)at)[i] = (uint32_t)number;
+}
+static double get_choice(const void *at, int i) {
+  return ((const int *)at)[i];
+}
+static void put_choice(void *at, int i, double number) {
+  ((int *)at)[i] = (int)number;
+}
+static double get_float(const void *at, int i) {
+  return (double)((const float *)at)[i];
+}
+static void put_float(void *at, int i, double number) {
+  ((float *)at)[i] = (float)number;
+}
+static double get_double(const void *at, int i) {
+  return ((const double *)at)[i];
+}
+static void put_double(void *at, int i, double number) {
+  ((double *)at)[i] = number;
+}
+
+#define NUMBERS(count, offset, get_function, put_function) \
+  .numbers = (count), .number = (offset), .get = get_function, .put = put_function
+const vlMemberType vl_member_types[] = {
+    [VL_PARAMETER_BOOL] = {NUMBERS(1, 0, get_bool, put_bool), .rule = "true or false"},
+    [VL_PARAMETER_COUNT] = {NUMBERS(1, 0, get_count, put_count)},
+    [VL_PARAMETER_FLOAT] = {NUMBERS(1, 0, get_float, put_float)},
+    [VL_PARAMETER_DOUBLE] = {NUMBERS(1, 0, get_double, put_double)},
+    [VL_PARAMETER_FLOAT3] = {NUMBERS(3, 0, get_float, put_float)},
+    [VL_PARAMETER_DOUBLE3] = {NUMBERS(3, 0, get_double, put_double)},
+    [VL_PARAMETER_CHOICE] = {NUMBERS(1, 0, get_choice, put_choice)},
+    [VL_PARAMETER_STRING] = {.text = true, .rule = "text"},
+    [VL_PARAMETER_FILE] = {.text = true, .rule = "the path of a file"},
+    [VL_PARAMETER_SPECTRUM] = {.spectral = true},
+    [VL_PARAMETER_FLOAT_INPUT] = {NUMBERS(1, offsetof(vlFloatInput, value), get_float,
+                                          put_float),
+                                  .textured = true},
+    [VL_PARAMETER_SPECTRUM_INPUT] = {.textured = true,
+                                     .spectral = true,
+                                     .spectrum = offsetof(vlSpectrumInput, value)},
+    [VL_PARAMETER_EITHER_INPUT] = {NUMBERS(1, offsetof(vlFloatInput, value), get_float,
+                                           put_float),
+                                   .textured = true},
+    [VL_PARAMETER_TEXTURE] = {.textured = true, .rule = "a texture"},
+    [VL_PARAMETER_BLOCK] = {.rule = "what its file's format says"}};
 
 /* ---- values ------------------------------------------------------------------------------ */
 
@@ -160,49 +215,6 @@ vlTextureDef vl_default_texture_def(vlTextureKind kind, bool spectrum) {
   return def;
 }
 
-vlLoadDef vl_default_load_def(void) {
-  return (vlLoadDef){
-      .cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET, .unit = VL_UNSET};
-}
-
-/* ---- the settings of an image ------------------------------------------------------------ */
-
-vlBuildDef vl_default_build_def(void) {
-  return (vlBuildDef){.cookie = VL_COOKIE_BUILD,
-                      .color = VL_COLOR_SPECTRAL,
-                      .light_sampler = VL_LIGHT_SAMPLER_BVH};
-}
-
-vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
-  return (vlFilmDef){.cookie = VL_COOKIE_FILM,
-                     .width = width,
-                     .height = height,
-                     .crop = {0, 0, width, height},
-                     .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
-                     .space = (vlColorSpace)0,
-                     .max_component = INFINITY,
-                     .lambda_min = VL_LAMBDA_MIN,
-                     .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
-}
-
-vlDevelopDef vl_default_develop_def(void) {
-  return (vlDevelopDef){.cookie = VL_COOKIE_DEVELOP, .exposure = 1.0f};
-}
-
-vlRenderDef vl_default_render_def(void) {
-  return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
-                       .tracer = VL_TRACER_VOLPATH,
-                       .sampler = VL_SAMPLER_ZSOBOL,
-                       .spp = 16,
-                       .max_depth = 5,
-                       .ao_distance = INFINITY,
-                       .merge_radius = VL_UNSET,
-                       .light_paths = VL_AS_MANY_AS_PIXELS,
-                       .noise_scale = 1.0f,
-                       .share_samples = true,
-                       .ao_cosine = true};
-}
-
 /* ---- members ----------------------------------------------------------------------------- */
 
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to) {
@@ -237,6 +249,75 @@ bool vl_parameter_number(const vlParameter *p, const void *def, double *number) 
     *number = vl_member_number(t, at, 0);
   return t->numbers == 1;
 }
+
+/* ---- whether a value fits its row -------------------------------------------------------- */
+
+static bool has_range(const vlParameter *p) {
+  return (p->low != 0 || p->high != 0) && !(p->flags & VL_PARAMETER_CLAMPED);
+}
+
+double vl_parameter_low(const vlParameter *p) {
+  if (p->type == VL_PARAMETER_COUNT && !(has_range(p) && p->low > 0))
+    return 0;
+  return has_range(p) ? p->low : (double)-INFINITY;
+}
+
+double vl_parameter_high(const vlParameter *p) {
+  if (p->type == VL_PARAMETER_COUNT && !(has_range(p) && p->high < UINT32_MAX))
+    return UINT32_MAX;
+  return has_range(p) ? p->high : (double)INFINITY;
+}
+
+uint32_t vl_choice_count(const vlParameter *p) {
+  uint32_t count = 0;
+  while (p->choices && p->choices[count])
+    count++;
+  return count;
+}
+
+/* Whether the member that holds the number is a float. */
+static bool is_single(const vlParameter *p) {
+  return p->type != VL_PARAMETER_DOUBLE && p->type != VL_PARAMETER_DOUBLE3 &&
+         p->type != VL_PARAMETER_COUNT;
+}
+
+bool vl_number_fits(const vlParameter *p, double x) {
+  if (p->type == VL_PARAMETER_CHOICE)
+    return x >= 0 && x < vl_choice_count(p);
+  if ((p->flags & VL_PARAMETER_UNSET) && vl_is_unset(x))
+    return true;
+  if (isnan(x))
+    return false;
+  double low = vl_parameter_low(p);
+  double high = vl_parameter_high(p);
+  if (isinf(x))
+    return p->flags & VL_PARAMETER_INFINITE && (x > 0 || isinf(low));
+  if (is_single(p) && fabs(x) > (double)FLT_MAX)
+    return false;
+  if (p->type == VL_PARAMETER_COUNT && x != floor(x))
+    return false;
+  if (p->flags & VL_PARAMETER_ABOVE_LOW && has_range(p) ? !(x > low) : !(x >= low))
+    return false;
+  return p->flags & VL_PARAMETER_BELOW_HIGH && has_range(p) ? x < high : x <= high;
+}
+
+bool vl_parameter_fits(const vlParameter *p, const void *def, double *wrong) {
+  const vlMemberType *t = &vl_member_types[p->type];
+  const void *at = (const char *)def + p->offset;
+  *wrong = 0;
+  if (t->text)
+    return !(p->flags & VL_PARAMETER_REQUIRED) || *(const char *const *)at;
+  if (t->spectral)
+    return !vl_parameter_number(p, def, wrong) || vl_number_fits(p, *wrong);
+  for (int i = 0; i < t->numbers && !vl_member_texture(t, at); i++) {
+    *wrong = vl_member_number(t, at, i);
+    if (!vl_number_fits(p, *wrong))
+      return false;
+  }
+  return true;
+}
+
+/* ---- defaults and textures of a def ------------------------------------------------------ */
 
 static bool same_spectrum(const vlSpectrum *a, const vlSpectrum *b) {
   if (a->kind != b->kind || a->scale != b->scale)

@@ -136,6 +136,35 @@ size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most
 /* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
+/* ---- members of defs ----------------------------------------------------------------------
+ */
+
+/* How the value of a parameter is stored. Offsets are from the value's begin. */
+typedef struct vlMemberType {
+  int numbers;   /* 1 or 3; 0: it holds a spectrum, a text, or something else */
+  size_t number; /* offset of the first one */
+  double (*get)(const void *at, int i);
+  void (*put)(void *at, int i, double number);
+  bool textured;    /* it begins with the id of a texture, which stands for the rest */
+  bool spectral;    /* it holds a spectrum */
+  size_t spectrum;  /* offset of the spectrum */
+  bool text;        /* it is a pointer to characters */
+  const char *rule; /* what it must be; null: check.c writes that */
+} vlMemberType;
+extern const vlMemberType vl_member_types[]; /* by vlParameterType */
+
+static inline uint32_t vl_member_texture(const vlMemberType *type, const void *at) {
+  return type->textured ? ((const vlTextureId *)at)->index : 0;
+}
+
+static inline double vl_member_number(const vlMemberType *type, const void *at, int i) {
+  return type->get((const char *)at + type->number, i);
+}
+
+static inline const vlSpectrum *vl_member_spectrum(const vlMemberType *type, const void *at) {
+  return (const vlSpectrum *)(const void *)((const char *)at + type->spectrum);
+}
+
 /* ---- defs -------------------------------------------------------------------------------- */
 
 /* Sets the members that the row describes to their defaults. Other members are unchanged. */
@@ -149,11 +178,23 @@ void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
 /* The name of a parameter in messages: its name in files, else its member's. */
 const char *vl_parameter_label(const vlParameter *parameter);
-/* Checks the value of a parameter: it must be finite, in range and a known choice, and must not
- * be missing if it is required. If the result is false, message holds the reason
- * (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in the message. */
+/* Whether the value of a parameter fits its row: it is finite, in range and a known choice, and
+ * not missing if it is required. Otherwise *wrong is the number that does not fit. */
+bool vl_parameter_fits(const vlParameter *parameter, const void *def, double *wrong);
+/* Writes why it does not (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in the message.
+ */
+void vl_parameter_complain(const vlParameter *parameter, const char *name, double wrong,
+                           char message[VL_GIVEN_MESSAGE]);
+/* Both: if the result is false, message holds the reason. */
 bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *name,
                         char message[VL_GIVEN_MESSAGE]);
+/* Whether a number in the def's unit is finite (or may be infinite, or unset), whole if it must
+ * be, and in range; of a choice, whether it is the index of one. */
+bool vl_number_fits(const vlParameter *parameter, double number);
+/* The range of its numbers, or infinity; numbers that are clamped have none. */
+double vl_parameter_low(const vlParameter *parameter);
+double vl_parameter_high(const vlParameter *parameter);
+uint32_t vl_choice_count(const vlParameter *parameter); /* number of its choices */
 /* Checks the choices of a part of a group's def (velo/setting.h), such as the member film of
  * vlSceneDefs: each must be one of those in its row. begin, size: of the part in the group's
  * def, bytes. If the result is false, message holds the reason. */

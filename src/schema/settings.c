@@ -1,10 +1,14 @@
 /* schema/settings.c: rows of the settings that are no parameters of a kind: of renders, loads,
  * completed scenes, ground truth, image files, contexts, and of the program alone. Those of
- * cameras are in cameras.c, those of sensors in sensors.c. */
+ * cameras are in cameras.c, those of sensors in sensors.c. Also the defaults of the defs that
+ * hold an image's settings. */
 #include <math.h>
 #include <string.h>
 
+#include "base/cookie.h"
 #include "base/text.h"
+#include "base/unset.h"
+#include "color/color.h"
 #include "schema/schema.h"
 #include "velo/channels.h"
 #include "velo/filter_kinds.h"
@@ -274,6 +278,49 @@ static const vlParameter program_parameters[] = {
 };
 static const vlKindRow program_row = {VL_ROW_PARAMETERS(program_parameters), .name = "program",
                                       .description = "what is turned into other settings"};
+
+/* ---- defaults ---------------------------------------------------------------------------- */
+
+vlLoadDef vl_default_load_def(void) {
+  return (vlLoadDef){
+      .cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET, .unit = VL_UNSET};
+}
+
+vlBuildDef vl_default_build_def(void) {
+  return (vlBuildDef){.cookie = VL_COOKIE_BUILD,
+                      .color = VL_COLOR_SPECTRAL,
+                      .light_sampler = VL_LIGHT_SAMPLER_BVH};
+}
+
+vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
+  return (vlFilmDef){.cookie = VL_COOKIE_FILM,
+                     .width = width,
+                     .height = height,
+                     .crop = {0, 0, width, height},
+                     .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
+                     .space = (vlColorSpace)0,
+                     .max_component = INFINITY,
+                     .lambda_min = VL_LAMBDA_MIN,
+                     .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
+}
+
+vlDevelopDef vl_default_develop_def(void) {
+  return (vlDevelopDef){.cookie = VL_COOKIE_DEVELOP, .exposure = 1.0f};
+}
+
+vlRenderDef vl_default_render_def(void) {
+  return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
+                       .tracer = VL_TRACER_VOLPATH,
+                       .sampler = VL_SAMPLER_ZSOBOL,
+                       .spp = 16,
+                       .max_depth = 5,
+                       .ao_distance = INFINITY,
+                       .merge_radius = VL_UNSET,
+                       .light_paths = VL_AS_MANY_AS_PIXELS,
+                       .noise_scale = 1.0f,
+                       .share_samples = true,
+                       .ao_cosine = true};
+}
 
 /* ---- finding them ------------------------------------------------------------------------ */
 

@@ -21,11 +21,6 @@
 
 /* ---- what both evaluators do for each kind ----------------------------------------------- */
 
-/* Whether the node reads more than the first uv set. */
-static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
-  return node->uv_set != 0 || node->colors;
-}
-
 /* Sets the uv and vertex colour of a texture point on a triangle, as far as the node reads
  * them. */
 static inline void vl_texture_at_corner(const vlTextureNode *node, const vlTextureCorner *where,

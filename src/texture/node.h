@@ -82,6 +82,11 @@ typedef struct vlTextureNode {
   float texture_from_world[12];
 } vlTextureNode;
 
+/* Whether the node reads more than the first uv set. */
+static inline bool vl_texture_needs_corner(const vlTextureNode *node) {
+  return node->uv_set != 0 || node->colors;
+}
+
 /* ---- where a node is evaluated (pbrt book 10.2) ------------------------------------------ */
 
 /* A point at which a texture is evaluated: uv, position and normal in world space, and the

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "film/file.h"
-#include "schema/member.h"
+#include "schema/schema.h"
 #include "unit.h"
 #include "velo/filter_kinds.h"
 #include "velo/schema.h"

@@ -285,17 +285,17 @@ void vl_dict_skip(vlDict *dict) {
 /* Reads a choice. Upper and lower case are not distinguished, as in pbrt. */
 static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, int *at) {
   const char *text;
-  int count = 0;
   if (!vl_dict_string(dict, name, &text))
     return false;
-  for (; p->choices[count]; count++) {
-    if (strcasecmp(text, p->choices[count]) != 0)
+  const uint32_t count = vl_choice_count(p);
+  for (uint32_t i = 0; i < count; i++) {
+    if (strcasecmp(text, p->choices[i]) != 0)
       continue;
-    *at = count;
+    *at = (int)i;
     return true;
   }
   /* reports the accepted values */
-  return vl_dict_choice(dict, name, p->choices, (size_t)count, at);
+  return vl_dict_choice(dict, name, p->choices, count, at);
 }
 
 static bool read_string(vlDict *dict, const char *name, const vlParameter *p, const char **at) {
@@ -380,6 +380,29 @@ static bool read_spectrum_input(vlDict *dict, const char *name, const vlParamete
   return vl_import_spectrum_input(dict, name, at, p->role == VL_PARAMETER_ALBEDO);
 }
 
+/* Reports a number that does not fit, at the parameter's source. Returns false. */
+static bool refuse(vlDict *dict, const vlParameter *p, double number) {
+  char name[200];
+  char message[VL_GIVEN_MESSAGE];
+  snprintf(name, sizeof name, "%s: parameter \"%s\"", dict->what, vl_parameter_label(p));
+  vl_parameter_complain(p, name, number, message);
+  const vlParam *param = vl_dict_find(dict, p->name, ~0u);
+  if (!param && p->alias)
+    param = vl_dict_find(dict, p->alias, ~0u);
+  return vl_import_wrong(dict->import, param ? param->source : dict->source, "%s", message);
+}
+
+/* Reads a whole number. The member holds none below 0; that it is in range is checked later. */
+static bool read_count(vlDict *dict, const char *name, const vlParameter *p, uint32_t *at) {
+  int32_t number;
+  if (!vl_dict_integer(dict, name, &number))
+    return false;
+  if (number < 0)
+    return refuse(dict, p, number);
+  *at = (uint32_t)number;
+  return true;
+}
+
 /* Reads one parameter. False when it is not given or after an error. */
 static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char *def,
                      bool spectrum) {
@@ -388,7 +411,7 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
     case VL_PARAMETER_BOOL:
       return vl_dict_bool(dict, name, at);
     case VL_PARAMETER_COUNT:
-      return vl_dict_count(dict, name, (int32_t)p->low, at);
+      return read_count(dict, name, p, at);
     case VL_PARAMETER_FLOAT:
       return read_float(dict, name, p, at);
     case VL_PARAMETER_DOUBLE:
@@ -440,19 +463,6 @@ static void copy_to_second(const vlParameter *p, char *def) {
     memcpy(def + p->second, def + p->offset, sizeof(float));
 }
 
-/* Reports an error at the parameter's source. */
-static bool check(vlDict *dict, const vlParameter *p, const void *def) {
-  char name[200];
-  char message[VL_GIVEN_MESSAGE];
-  snprintf(name, sizeof name, "%s: parameter \"%s\"", dict->what, vl_parameter_label(p));
-  if (vl_parameter_check(p, def, name, message))
-    return true;
-  const vlParam *param = vl_dict_find(dict, p->name, ~0u);
-  if (!param && p->alias)
-    param = vl_dict_find(dict, p->alias, ~0u);
-  return vl_import_wrong(dict->import, param ? param->source : dict->source, "%s", message);
-}
-
 /* Reports a parameter that is missing; one that is misspelt is reported first. */
 static bool check_required(vlDict *dict, const vlParameter *p) {
   if (!p->name || !(p->flags & VL_PARAMETER_REQUIRED) || (p->flags & VL_PARAMETER_RULE) ||
@@ -468,6 +478,7 @@ bool vl_import_parameters(vlDict *dict, void *def, bool spectrum) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     bool given = false;
+    double wrong;
     dict->given[i] = false;
     if (!p->name || (p->flags & VL_PARAMETER_RULE))
       continue;
@@ -480,8 +491,8 @@ bool vl_import_parameters(vlDict *dict, void *def, bool spectrum) {
     if (!given)
       continue;
     convert(p, def);
-    if (!check(dict, p, def))
-      return false;
+    if (!vl_parameter_fits(p, def, &wrong))
+      return refuse(dict, p, wrong);
     if (p->second)
       copy_to_second(p, def);
   }
@@ -499,8 +510,5 @@ bool vl_import_given(const vlDict *dict, const char *name) {
 
 bool vl_dict_row_choice(vlDict *dict, const char *name, int *value) {
   const vlParameter *p = vl_row_find(dict->row, name);
-  size_t count = 0;
-  while (p && p->choices[count])
-    count++;
-  return p && vl_dict_choice(dict, name, p->choices, count, value);
+  return p && vl_dict_choice(dict, name, p->choices, vl_choice_count(p), value);
 }

@@ -72,13 +72,16 @@ static vlResult check_rows(const vlCameraDef *d, vlError *error) {
   VL_EACH_PARAMETER(p, rows) {
     char name[80];
     char message[VL_GIVEN_MESSAGE];
+    double wrong;
     if (p->flags & VL_PARAMETER_SHORTHAND)
       continue;
     if (d->projection == VL_PROJECTION_OWN && p->offset == offsetof(vlCameraDef, projection))
       continue;
+    if (vl_parameter_fits(p, d, &wrong))
+      continue;
     snprintf(name, sizeof name, "camera: %s", vl_setting_keyword(p));
-    if (!vl_parameter_check(p, d, name, message))
-      return vl_fail_argument(error, "%s", message);
+    vl_parameter_complain(p, name, wrong, message);
+    return vl_fail_argument(error, "%s", message);
   }
   return VL_OK;
 }
@@ -93,6 +96,39 @@ static vlResult check_rest(const vlCameraDef *d, vlError *error) {
     return vl_fail_argument(error,
                             "camera: near plane %g and far plane %g; needed is 0 <= near < far",
                             d->near_plane, d->far_plane);
+  return VL_OK;
+}
+
+/* Checks the numbers of the projection and puts in their defaults. */
+static vlResult shape_numbers(const vlCameraDef *def, vlCamera *camera, vlError *error) {
+  const vlProjectionRow *row = vl_projection_row(def->projection);
+  const char *name = row->name;
+  const vlShapeNumber *n = row->numbers;
+  int count = (int)row->count;
+  camera->shape[0] = camera->shape[1] = 0.0;
+  for (int i = 0; i < 2; i++) {
+    double value = def->shape[i];
+    if (i >= count) {
+      if (!vl_is_unset(value))
+        return vl_fail_argument(error,
+                                "camera: the %s projection takes %d numbers; shape[%d] is %g",
+                                name, count, i, value);
+      continue;
+    }
+    if (vl_is_unset(value))
+      value = n[i].standard;
+    if (vl_is_unset(value))
+      return vl_fail_argument(error, "camera: the %s projection needs its %s", name, n[i].name);
+    if (!(value >= n[i].least && value <= n[i].most))
+      return vl_fail_argument(error,
+                              "camera: %s of the %s projection is %g; it must be %g to %g",
+                              n[i].name, name, value, n[i].least, n[i].most);
+    if (def->projection == VL_PROJECTION_CUBE && value != 0.0 && value != 1.0)
+      return vl_fail_argument(
+          error, "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",
+          value);
+    camera->shape[i] = value;
+  }
   return VL_OK;
 }
 
@@ -123,9 +159,11 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
       .exposure_time = def->exposure_time,
       .near_plane = def->near_plane,
       .far_plane = def->far_plane,
+      .limit = INFINITY,
   };
   VL_TRY(check_rest(def, error));
-  VL_TRY(vl_camera_model(def, &made, error));
+  VL_TRY(shape_numbers(def, &made, error));
+  VL_TRY(vl_camera_distortion(def, &made.distortion, error));
   VL_TRY(vl_camera_intrinsics(def, &made, error));
   VL_TRY(vl_camera_pose(def, &made, warning, error));
   VL_TRY(vl_camera_time_part(def, &made, warning, error));

@@ -1,5 +1,5 @@
-/* camera/model.c: checks the parameters of a projection and of a lens distortion, and converts
- * them to one form. */
+/* camera/model.c: checks the coefficients of a lens distortion and converts them to one form;
+ * the camera models of COLMAP. */
 #include <math.h>
 
 #include "base/error.h"
@@ -13,38 +13,6 @@
 #include "projection/properties.row.h"
 #include "velo/distortion.h"
 #include "velo/projection.h"
-
-static vlResult shape(const vlCameraDef *def, vlCamera *camera, vlError *error) {
-  const vlProjectionRow *row = vl_projection_row(def->projection);
-  const char *name = row->name;
-  const vlShapeNumber *n = row->numbers;
-  int count = (int)row->count;
-  camera->shape[0] = camera->shape[1] = 0.0;
-  for (int i = 0; i < 2; i++) {
-    double value = def->shape[i];
-    if (i >= count) {
-      if (!vl_is_unset(value))
-        return vl_fail_argument(error,
-                                "camera: the %s projection takes %d numbers; shape[%d] is %g",
-                                name, count, i, value);
-      continue;
-    }
-    if (vl_is_unset(value))
-      value = n[i].standard;
-    if (vl_is_unset(value))
-      return vl_fail_argument(error, "camera: the %s projection needs its %s", name, n[i].name);
-    if (!(value >= n[i].least && value <= n[i].most))
-      return vl_fail_argument(error,
-                              "camera: %s of the %s projection is %g; it must be %g to %g",
-                              n[i].name, name, value, n[i].least, n[i].most);
-    if (def->projection == VL_PROJECTION_CUBE && value != 0.0 && value != 1.0)
-      return vl_fail_argument(
-          error, "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",
-          value);
-    camera->shape[i] = value;
-  }
-  return VL_OK;
-}
 
 #define DECLARE(kind, row, compile) vlDistortionCompile compile;
 VL_DISTORTION_FUNCTIONS(DECLARE)
@@ -62,7 +30,7 @@ static vlResult compile_kind(const vlCameraDef *def, vlDistortionMap *m, vlError
   return VL_ERROR_ARGUMENT;
 }
 
-static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
+vlResult vl_camera_distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *error) {
   static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const double *k = def->distortion_coefficients;
   uint32_t n = def->distortion_count;
@@ -91,13 +59,6 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
   for (uint32_t i = 0; i < n; i++)
     if (k[i] != 0.0)
       m->steps = 1; /* if all are zero there is no distortion */
-  return VL_OK;
-}
-
-vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error) {
-  VL_TRY(shape(def, camera, error));
-  VL_TRY(distortion(def, &camera->distortion, error));
-  camera->limit = INFINITY;
   return VL_OK;
 }
 

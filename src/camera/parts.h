@@ -7,8 +7,8 @@
 #include "camera/rays.h"
 #include "velo/camera.h"
 
-/* Sets shape, and the distortion's coefficients and tilt. Checks their ranges and counts. */
-vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error);
+/* Sets the distortion's coefficients and tilt. Checks their ranges and counts. */
+vlResult vl_camera_distortion(const vlCameraDef *def, vlDistortionMap *map, vlError *error);
 /* Sets limit, distortion.radius and steps, and outside. Called last: it needs all other
  * parts. */
 vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning,

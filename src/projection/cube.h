@@ -16,7 +16,8 @@
 #ifndef PROJECTION_CUBE_H
 #define PROJECTION_CUBE_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* Returns the number of the cell that contains a plane point. A point far outside the layout
  * gets a cell that belongs to no face. */

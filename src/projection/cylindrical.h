@@ -5,8 +5,9 @@
 #ifndef PROJECTION_CYLINDRICAL_H
 #define PROJECTION_CYLINDRICAL_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "math/approx_double.h"
-#include "projection/functions.h"
 
 VL_INLINE vlDirection vl_unproject_cylindrical(VL_UNPROJECT_INPUT) {
   double over = c->over_x;

@@ -3,7 +3,8 @@
 #ifndef PROJECTION_DIVISION_H
 #define PROJECTION_DIVISION_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* Undistorted = distorted / (1 + lambda r^2). Domain: barrel (lambda < 0) all directions but
  * straight back; pincushion up to r = 1/sqrt(lambda), where it folds. */

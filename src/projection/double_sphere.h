@@ -3,7 +3,8 @@
 #ifndef PROJECTION_DOUBLE_SPHERE_H
 #define PROJECTION_DOUBLE_SPHERE_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* m = X / (a d2 + (1 - a)(xi d1 + Z)), d1 = |P|, d2 = sqrt(R^2 + (xi d1 + Z)^2). The points
  * that it takes back are those with xi d1 + Z > -w1 d2, which is the unified model's condition

@@ -7,8 +7,9 @@
 #ifndef PROJECTION_EQUAL_AREA_H
 #define PROJECTION_EQUAL_AREA_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "math/approx_double.h"
-#include "projection/functions.h"
 
 VL_INLINE vlDirection vl_unproject_equal_area(VL_UNPROJECT_INPUT) {
   double over = c->over_x;

@@ -4,8 +4,9 @@
 #ifndef PROJECTION_EQUIDISTANT_H
 #define PROJECTION_EQUIDISTANT_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "math/approx_double.h"
-#include "projection/functions.h"
 
 /* The domain is all directions except straight back. */
 VL_INLINE vlDirection vl_unproject_equidistant(VL_UNPROJECT_INPUT) {

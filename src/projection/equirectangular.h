@@ -8,8 +8,9 @@
 #ifndef PROJECTION_EQUIRECTANGULAR_H
 #define PROJECTION_EQUIRECTANGULAR_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "math/approx_double.h"
-#include "projection/functions.h"
 
 VL_INLINE vlDirection vl_unproject_equirectangular(VL_UNPROJECT_INPUT) {
   double over_x = c->over_x, over_y = c->over_y;

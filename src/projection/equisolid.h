@@ -4,8 +4,9 @@
 #ifndef PROJECTION_EQUISOLID_H
 #define PROJECTION_EQUISOLID_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "projection/fisheye.h"
-#include "projection/functions.h"
 
 VL_INLINE vlDirection vl_unproject_equisolid(VL_UNPROJECT_INPUT) {
   double r2 = x * x + y * y, k = vl_root(1.0 - 0.25 * r2);

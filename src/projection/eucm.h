@@ -4,7 +4,8 @@
 #ifndef PROJECTION_EUCM_H
 #define PROJECTION_EUCM_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* m = X / (a d + (1 - a) Z), d = sqrt(b R^2 + Z^2). */
 VL_INLINE vlDirection vl_unproject_eucm(VL_UNPROJECT_INPUT) {

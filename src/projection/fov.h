@@ -3,8 +3,9 @@
 #ifndef PROJECTION_FOV_H
 #define PROJECTION_FOV_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "math/approx_double.h"
-#include "projection/functions.h"
 
 /* r = atan(2 tan(theta) tan(w/2)) / w; t = 2 tan(w/2). Domain: the half-space z > 0. */
 VL_INLINE vlDirection vl_unproject_fov(VL_UNPROJECT_INPUT) {

@@ -3,7 +3,8 @@
 #ifndef PROJECTION_OPTICS_H
 #define PROJECTION_OPTICS_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 VL_INLINE vlDirection vl_unproject_optics(VL_UNPROJECT_INPUT) {
   return (vlDirection){x, y, 1.0, 0.0};

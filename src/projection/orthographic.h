@@ -3,8 +3,8 @@
 #ifndef PROJECTION_ORTHOGRAPHIC_H
 #define PROJECTION_ORTHOGRAPHIC_H
 
+#include "camera/plane.h"
 #include "camera/rays.h"
-#include "projection/functions.h"
 
 /* x, y: pixels from the principal point. */
 static inline vlCameraLocal vl_orthographic_unproject(const vlCameraCompiled *c, double x,

@@ -7,7 +7,8 @@
 #ifndef PROJECTION_PANINI_H
 #define PROJECTION_PANINI_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* Returns the lower bound of cos(longitude). At the bound the plane is infinite for d <= 1, and
  * it folds for d > 1. */

@@ -4,8 +4,8 @@
 #ifndef PROJECTION_PERSPECTIVE_H
 #define PROJECTION_PERSPECTIVE_H
 
+#include "camera/plane.h"
 #include "camera/rays.h"
-#include "projection/functions.h"
 
 /* x, y: pixels from the principal point. The direction has the form of the lecture, (x_v, y_v,
  * d), with the view plane at distance d = fx and pixels of size 1. It is not divided by d, so

@@ -4,7 +4,8 @@
 #ifndef PROJECTION_SINE_H
 #define PROJECTION_SINE_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* Domain: the half-space z > 0. */
 VL_INLINE vlDirection vl_unproject_sine(VL_UNPROJECT_INPUT) {

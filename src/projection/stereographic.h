@@ -4,8 +4,9 @@
 #ifndef PROJECTION_STEREOGRAPHIC_H
 #define PROJECTION_STEREOGRAPHIC_H
 
+#include "camera/plane.h"
+#include "camera/rays.h"
 #include "projection/fisheye.h"
-#include "projection/functions.h"
 
 VL_INLINE vlDirection vl_unproject_stereographic(VL_UNPROJECT_INPUT) {
   double t = 0.25 * (x * x + y * y), k = 1.0 / (1.0 + t);

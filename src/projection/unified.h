@@ -3,7 +3,8 @@
 #ifndef PROJECTION_UNIFIED_H
 #define PROJECTION_UNIFIED_H
 
-#include "projection/functions.h"
+#include "camera/plane.h"
+#include "camera/rays.h"
 
 /* m = X / (Z + xi |P|). */
 VL_INLINE vlDirection vl_unproject_unified(VL_UNPROJECT_INPUT) {

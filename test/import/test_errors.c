@@ -320,7 +320,7 @@ static const struct {
     /* image */
     {"Film \"rgb\" \"integer xresolution\" 0\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be a whole number from 1 to "
-     "4294967295; it is 0"},
+     "65536; it is 0"},
     {"Film \"rgb\" \"integer xresolution\" 2000000\n" W,
      "t.pbrt:1:12: Film \"rgb\": parameter \"xresolution\" must be a whole number from 1 to "
      "65536; it is 2000000"},

@@ -66,8 +66,7 @@ static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
       m->v_roughness.texture.index || !(coat.u >= VL_GGX_SMOOTH || coat.v >= VL_GGX_SMOOTH) ||
       !index_of(m, &coat.eta) || coat.eta == 1.0f)
     return 0;
-  for (size_t i = 0; i < coats->count; i++) {
-    const Coat *c = &coats->items[i];
+  VL_EACH_ITEM(const Coat, c, coats) {
     if (c->eta == coat.eta && c->tau == coat.tau && c->u == coat.u && c->v == coat.v)
       return c->lost;
   }

@@ -124,8 +124,7 @@ static Form form_of(const vlParameter *p) {
 static void add_parameter(Fields *fields, const vlParameter *p) {
   if (form_of(p) == NOT_HELD)
     return;
-  for (size_t i = 0; i < fields->count; i++) {
-    Field *field = &fields->items[i];
+  VL_EACH_ITEM(Field, field, fields) {
     if (!vl_text_is(field->member, p->member))
       continue;
     if (!field->row)
@@ -145,8 +144,7 @@ static void list_fields(Fields *fields) {
   for (uint32_t i = cameras->kind_count; i-- > 0;)
     for (uint32_t k = 0; k < cameras->rows[i]->parameter_count; k++)
       add_parameter(fields, &cameras->rows[i]->parameters[k]);
-  for (size_t i = 0; i < fields->count; i++) {
-    Field *field = &fields->items[i];
+  VL_EACH_ITEM(Field, field, fields) {
     if (!field->name)
       field->name = vl_last_part(field->member);
     field->form = NUMBERS;

@@ -59,6 +59,19 @@ const char *vl_named_spectrum_name(unsigned index) {
   return index < vl_table_named_count ? vl_table_named[index].name : NULL;
 }
 
+const char *vl_named_spectrum_find(const char *name, const char **near) {
+  enum { MAX_NAMES = 512 };
+  const char *names[MAX_NAMES];
+  uint32_t count = vl_table_named_count < MAX_NAMES ? vl_table_named_count : MAX_NAMES;
+  for (uint32_t i = 0; i < count; i++) {
+    names[i] = vl_table_named[i].name;
+    if (vl_text_is(names[i], name))
+      return names[i];
+  }
+  *near = vl_nearest_name(name, names, count);
+  return NULL;
+}
+
 const float *vl_named_spectrum(const char *name) {
   if (!name)
     return NULL;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/free.h"
 #include "base/json.h"
@@ -36,8 +37,7 @@ typedef struct FieldList {
 } FieldList;
 
 static void add_field(FieldList *list, const Field *field) {
-  for (size_t i = 0; i < list->count; i++) {
-    Field *known = &list->items[i];
+  VL_EACH_ITEM(Field, known, list) {
     if (known->offset != field->offset)
       continue;
     known->optional = known->optional && field->optional; /* a parameter of several filters */

@@ -17,7 +17,7 @@ static uint32_t closest(const vlWorld *world, vlVec3 o, vlVec3 d, float t_min, f
   vlRays ray = vl_one_ray(&o, &d, &t_min, &t_max, NULL);
   vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t);
   if (shape != VL_NONE)
-    *at = vl_point_at(world, o, d, shape, prim, instance, t);
+    *at = vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
   return shape;
 }
 

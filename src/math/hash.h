@@ -27,7 +27,7 @@ static inline uint64_t vl_hash64(uint64_t x) {
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
-/* Converts the top 24 random bits to a float in [0, 1). */
+/* The top 24 bits of a fraction, random bits among them, as a float in [0, 1). */
 static inline float vl_unit_float(uint32_t bits) {
   return (float)(int32_t)(bits >> 8) * 0x1p-24f; /* signed: a single instruction on every set */
 }

@@ -19,12 +19,6 @@ static inline uint32_t vl_reverse_bits(uint32_t x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-/* The top 24 bits of a fraction as a float in [0,1). Converts from signed, a single instruction
- * on every set. */
-static inline float vl_fraction_float(uint32_t x) {
-  return (float)(int32_t)(x >> 8) * 0x1p-24f;
-}
-
 /* Nested uniform scrambling of a bit-reversed fraction: a random permutation in which each bit
  * is flipped or kept by a hash of the lower bits alone (Laine and Karras 2011; Burley 2020,
  * "Practical Hash-based Owen Scrambling"; constants found by search, Vegdahl 2021, "Building a

@@ -102,7 +102,7 @@ VL_INLINE void vl_hammersley_2d(const vlSampler *s, const vlSamplerChunk *c, flo
   VL_SIMD for (uint32_t i = 0; i < c->n; i++) {
     uint32_t h = vl_hash2(c->key[i], k[i]);
     u[i] = vl_cell_float(k[i] << bits | h >> down, scale);
-    v[i] = vl_fraction_float(vl_reverse_bits(k[i]) ^ vl_hash(c->key[i] + 0x1b56c4e9u));
+    v[i] = vl_unit_float(vl_reverse_bits(k[i]) ^ vl_hash(c->key[i] + 0x1b56c4e9u));
   }
 }
 

@@ -34,7 +34,7 @@ VL_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c, uint32_
   if (b == 2) {
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < c->n; i++) {
-      u[i] = vl_fraction_float(vl_reverse_bits(vl_owen_reversed(c->index[i], c->key[i])));
+      u[i] = vl_unit_float(vl_reverse_bits(vl_owen_reversed(c->index[i], c->key[i])));
     }
     return;
   }
@@ -61,7 +61,7 @@ VL_INLINE void vl_halton_1d(const vlSampler *s, const vlSamplerChunk *c, uint32_
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < c->n; i++) {
-    float x = sum[i] + vl_fraction_float(hash[i]) * scale;
+    float x = sum[i] + vl_unit_float(hash[i]) * scale;
     u[i] = x < VL_ONE_MINUS_EPSILON ? x : VL_ONE_MINUS_EPSILON;
   }
 }

@@ -26,10 +26,10 @@ VL_INLINE uint32_t vl_sobol_shuffled(uint32_t index, uint32_t seed) {
   return vl_reverse_bits(vl_owen_reversed(vl_reverse_bits(index), seed));
 }
 VL_INLINE float vl_sobol_x(uint32_t j, uint32_t seed) {
-  return vl_fraction_float(vl_reverse_bits(vl_owen_reversed(j, seed)));
+  return vl_unit_float(vl_reverse_bits(vl_owen_reversed(j, seed)));
 }
 VL_INLINE float vl_sobol_y(uint32_t j, uint32_t seed) {
-  return vl_fraction_float(vl_reverse_bits(vl_owen_reversed(vl_sobol2_reversed(j), seed)));
+  return vl_unit_float(vl_reverse_bits(vl_owen_reversed(vl_sobol2_reversed(j), seed)));
 }
 
 VL_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32_t n, const int32_t *px,
@@ -151,7 +151,7 @@ VL_INLINE void vl_sobol_number(uint32_t n, const uint32_t columns[32], const uin
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
-    u[i] = vl_fraction_float(vl_reverse_bits(vl_owen_reversed(product[i], seed[i])));
+    u[i] = vl_unit_float(vl_reverse_bits(vl_owen_reversed(product[i], seed[i])));
   }
 }
 

@@ -48,11 +48,11 @@ const vlKindRow *vl_scene_row_to_add(vlScene *scene, vlSceneFamily family, const
 
 uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
   const vlSceneRow *row = &vl_scene_rows[family];
-  char *const members = (char *)scene;
   size_t *count = vl_scene_count_of(scene, family);
+  void *items = (char *)scene + row->items;
+  void *capacity = (char *)scene + row->capacity;
   if (*count >= MAX_OBJECTS ||
-      !vl_array_reserve(scene->context, members + row->items, members + row->capacity, *count,
-                        row->size, 1)) {
+      !vl_array_reserve(scene->context, items, capacity, *count, row->size, 1)) {
     vl_scene_fail_memory(scene);
     return 0;
   }
@@ -64,14 +64,9 @@ uint32_t vl_scene_push(vlScene *scene, vlSceneFamily family, const void *def) {
 /* ---- what a row describes ---------------------------------------------------------------- */
 
 static bool check_name(vlScene *scene, const char *name, vlSource source, const char *what) {
-  const char *names[512];
-  unsigned count = 0;
-  for (const char *known; count < 512 && (known = vl_named_spectrum_name(count)); count++) {
-    if (strcmp(known, name) == 0)
-      return true;
-    names[count] = known;
-  }
-  const char *near = vl_nearest_name(name, names, count);
+  const char *near;
+  if (vl_named_spectrum_find(name, &near))
+    return true;
   return vl_scene_fail(scene, VL_ERROR_SCENE, source,
                        near ? "%s: no spectrum is named \"%s\" (did you mean \"%s\"?)"
                             : "%s: no spectrum is named \"%s\"",

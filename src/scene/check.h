@@ -36,11 +36,10 @@ void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong medi
 
 /* ---- helpers ----------------------------------------------------------------------------- */
 
-/* Gives the textures that a material reads directly, at most VL_CHECK_INPUTS. Id 0: none. */
+/* Gives the textures that a material or a texture reads directly. Returns their number. */
 enum { VL_CHECK_INPUTS = 48 };
-uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]);
-/* Gives the textures that a texture reads directly. */
-uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]);
+uint32_t vl_check_inputs(vlSceneFamily family, const void *def,
+                         vlTextureId inputs[VL_CHECK_INPUTS]);
 /* Name for a message: "material \"glass\"", "the default material", "the material of line
  * 3". */
 typedef struct vlCheckName {

@@ -213,7 +213,8 @@ static void mark_needed(vlCheck *c, uint8_t *needed) {
         needed[list[k].input->texture.index - 1] = 1;
   }
   for (size_t i = s->textures.count; i-- > 0;) {
-    uint32_t n = needed[i] ? vl_check_texture_inputs(&s->textures.items[i], inputs) : 0;
+    uint32_t n =
+        needed[i] ? vl_check_inputs(VL_SCENE_TEXTURES, &s->textures.items[i], inputs) : 0;
     for (uint32_t k = 0; k < n; k++)
       needed[inputs[k].index - 1] = 1;
   }

@@ -92,13 +92,13 @@ static void find_needs(vlCheck *c, Needs *n) {
   vlTextureId inputs[VL_CHECK_INPUTS];
   for (size_t i = 0; i < s->textures.count; i++) {
     n->textures[i] = own_needs(&s->textures.items[i]);
-    uint32_t count = vl_check_texture_inputs(&s->textures.items[i], inputs);
+    uint32_t count = vl_check_inputs(VL_SCENE_TEXTURES, &s->textures.items[i], inputs);
     for (uint32_t k = 0; k < count; k++)
       n->textures[i] |= n->textures[inputs[k].index - 1];
   }
   for (size_t i = 0; i < s->materials.count; i++) {
     const vlMaterialDef *m = &s->materials.items[i];
-    uint32_t count = vl_check_material_inputs(m, inputs);
+    uint32_t count = vl_check_inputs(VL_SCENE_MATERIALS, m, inputs);
     for (uint32_t k = 0; k < count; k++) {
       uint8_t needs = n->textures[inputs[k].index - 1];
       if (needs)

@@ -6,6 +6,7 @@
 #include "base/free.h"
 #include "base/text.h"
 #include "scene/check.h"
+#include "scene/family.h"
 #include "schema/schema.h"
 #include "velo/light.h"
 #include "velo/material.h"
@@ -13,14 +14,9 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs,
-                         VL_CHECK_INPUTS);
-}
-
-uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  return vl_row_textures(vl_kind_row(&vl_texture_family, (int)t->kind), t, inputs,
-                         VL_CHECK_INPUTS);
+uint32_t vl_check_inputs(vlSceneFamily family, const void *def,
+                         vlTextureId inputs[VL_CHECK_INPUTS]) {
+  return vl_row_textures(vl_scene_def_row(family, def), def, inputs, VL_CHECK_INPUTS);
 }
 
 /* "material "NAME"", "the material of line 3" or "its material". */

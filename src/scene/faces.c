@@ -20,8 +20,7 @@ static vlFace face_of(const vlShapeDef *shape, const vlMat4 *m, double sign, siz
 }
 
 void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
-  for (size_t k = 0; k < scene->shapes.count; k++) {
-    const vlShapeDef *shape = &scene->shapes.items[k];
+  VL_EACH_ITEM(const vlShapeDef, shape, &scene->shapes) {
     if (shape->kind != VL_SHAPE_TRIANGLES || shape->group.index)
       continue;
     const vlMat4 m = vl_mat4_load(shape->group_from_shape);
@@ -34,4 +33,12 @@ void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user) {
         visit(user, &face);
     }
   }
+}
+
+bool vl_faces_one_sided(const vlScene *scene) {
+  VL_EACH_ITEM(const vlShapeDef, shape, &scene->shapes) {
+    if (shape->one_sided)
+      return true;
+  }
+  return false;
 }

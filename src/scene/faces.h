@@ -17,5 +17,7 @@ typedef struct vlFace {
 /* Triangles without an area are not visited. */
 typedef void vlFaceVisit(void *user, const vlFace *face);
 void vl_faces_visit(const vlScene *scene, vlFaceVisit *visit, void *user);
+/* Whether a shape, also one in a group, is seen from one side only. */
+bool vl_faces_one_sided(const vlScene *scene);
 
 #endif

@@ -125,16 +125,9 @@ static void mend_winding(vlScene *scene, const Parts *parts) {
            turned);
 }
 
-static bool has_one_sided(const vlScene *scene) {
-  bool some = false;
-  for (size_t i = 0; i < scene->shapes.count && !some; i++)
-    some = scene->shapes.items[i].one_sided;
-  return some && scene->shapes.count > 1;
-}
-
 bool vl_mend_model(vlScene *scene) {
   show_invisible(scene);
-  if (!has_one_sided(scene))
+  if (scene->shapes.count < 2 || !vl_faces_one_sided(scene))
     return true;
   Parts parts = {.scene = scene};
   parts.items = vl_alloc_zero(scene->context, scene->shapes.count, sizeof *parts.items);

@@ -3,15 +3,9 @@
 
 #include <math.h>
 
+#include "scene/faces.h"
 #include "scene/posture.h"
 #include "velo/shape_kinds.h"
-
-static bool has_one_sided(const vlScene *scene) {
-  bool one_sided = false;
-  for (size_t i = 0; i < scene->shapes.count; i++)
-    one_sided = one_sided || scene->shapes.items[i].one_sided;
-  return one_sided;
-}
 
 bool vl_tray_is(const vlScene *scene, const vlExtent *box, int axis) {
   const double floor_least = 0.8, wall_least = 0.5, ceiling = 0.3, hollow = 3, sheet = 1.3,
@@ -29,5 +23,5 @@ bool vl_tray_is(const vlScene *scene, const vlExtent *box, int axis) {
     return false;
   /* a solid block with hills on it has walls with one side, and a top */
   return (p.silhouette[i] >= hollow && p.silhouette[j] >= hollow) ||
-         (p.silhouette[axis] <= sheet && !has_one_sided(scene));
+         (p.silhouette[axis] <= sheet && !vl_faces_one_sided(scene));
 }

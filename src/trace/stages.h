@@ -88,6 +88,16 @@ static inline vlTracing vl_tracing_of(const vlWorld *world, const vlTraceDef *de
                      .bounces = s->bounces};
 }
 
+/* The sampler's numbers for n paths: of one dimension; of a pair of dimensions. */
+static inline void vl_draw_1d(const vlTracing *t, uint32_t n, const vlPaths *p,
+                              uint32_t dimension, float *u) {
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension, u);
+}
+static inline void vl_draw_2d(const vlTracing *t, uint32_t n, const vlPaths *p,
+                              uint32_t dimension, float *u, float *v) {
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension, u, v);
+}
+
 /* What a tracer does at each bounce with the paths of t->s. */
 typedef struct vlBounceSteps {
   /* The n rays have arrived at t->s->hits. Adds the lights that they hit. False: all paths end.

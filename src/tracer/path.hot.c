@@ -91,16 +91,14 @@ void vl_stage_light_samples(const vlTracing *t, uint32_t n, const vlPaths *p,
                             const vlSurface *surface, uint32_t dimension,
                             vlLightSamples *light) {
   vlNumbers r;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT,
-                     r.u0);
+  vl_draw_1d(t, n, p, dimension + VL_DIM_LIGHT, r.u0);
   /* The direct light at the first hit is a function of film point and light point: the four
    * numbers are drawn together (docs/tracers.md). Deeper vertices gain nothing from it. */
   if (dimension == VL_DIM_BOUNCE)
     t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_FIRST_LIGHT,
                             VL_DIM_FILM, r.u1, r.u2);
   else
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
-                       r.u1, r.u2);
+    vl_draw_2d(t, n, p, dimension + VL_DIM_LIGHT_UV, r.u1, r.u2);
   vl_stage_lights(t->world, n, p, surface, r.u1, r.u2, r.u0, light);
 }
 
@@ -211,9 +209,8 @@ static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
                          const vlVertices *at, vlBsdfSamples *to) {
   const vlPaths *p = &at->paths;
   vlNumbers u;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LOBE, u.u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
-                     u.u1, u.u2);
+  vl_draw_1d(t, n, p, dimension + VL_DIM_LOBE, u.u0);
+  vl_draw_2d(t, n, p, dimension + VL_DIM_BSDF_UV, u.u1, u.u2);
   /* a run is padded to whole lanes from its own first one: the last run reads past VL_PAD(n) */
   for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
     u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
@@ -292,8 +289,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   float u[VL_ROW_SIZE], broken[VL_ROW_SIZE];
   uint32_t alive[VL_ROW_SIZE], count = 0;
   sample_bsdfs(t, n, dimension, at, samples);
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE,
-                     u);
+  vl_draw_1d(t, n, p, dimension + VL_DIM_ROULETTE, u);
   make_rays(t, n, depth, at, samples, u, next, alive, broken);
   for (uint32_t i = 0; i < n; i++) {
     order[count] = i;

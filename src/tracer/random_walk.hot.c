@@ -21,8 +21,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlNumbers u;
   vlVec3Row w;
   uint32_t count = 0;
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index,
-                     vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u.u1, u.u2);
+  vl_draw_2d(t, n, p, vl_bounce_dimension(depth) + VL_DIM_BSDF_UV, u.u1, u.u2);
   for (uint32_t i = 0; i < VL_PAD(n); i++)
     vl_set_row3(&w, i, vl_warp_sphere(u.u1[i], u.u2[i]));
   vl_stage_local(n, &s->at, &w, s->values.wi);

@@ -92,8 +92,7 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
   vl_stage_alpha(t, &s->hits);
   n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   vl_stage_shade(t, n, &s->at);
-  t->sampler->get_2d(t->def->sampler, n, s->at.paths.px, s->at.paths.py, s->at.paths.index,
-                     VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u.u1, u.u2);
+  vl_draw_2d(t, n, &s->at.paths, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u.u1, u.u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
     /* geometric normal, as in pbrt */

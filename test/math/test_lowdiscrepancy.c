@@ -16,7 +16,7 @@ static void test_bits(void **state) {
     for (int i = 0; i < 16; i++)
       morton |= (x >> i & 1) << 2 * i | (y >> i & 1) << (2 * i + 1);
     assert_int_equal(vl_morton(x & 0xffff, y & 0xffff), morton);
-    float u = vl_fraction_float(x);
+    float u = vl_unit_float(x);
     assert_true(u >= 0 && u < 1 && fabs(u - x * 0x1p-32) <= 0x1p-24);
   }
   uint32_t primes = 0;

@@ -78,7 +78,7 @@ static double density(void *user, const double d[3]) {
     return pdf;
   uint32_t index = f->world->shapes.items[shape].first_light + prim;
   const vlWorldLight *light = &f->world->lights.items[index];
-  vlPoint at = vl_point_at(f->world, f->p, dir, shape, prim, instance, t);
+  vlPoint at = vl_point_at_time(f->world, 0.0f, f->p, dir, shape, prim, instance, t);
   if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided)
     return pdf;
   return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) *

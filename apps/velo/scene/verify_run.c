@@ -380,7 +380,7 @@ static vlResult go(Verify *v, VerifyRun *run, Set *set, vlFilm *film, int look,
                               : render_run(v, run, set, film, look, error);
 }
 
-static vlResult each_run(Verify *v, int look, vlError *error) {
+vlResult verify_render(Verify *v, int look, vlError *error) {
   Set set = {0};
   vlFilm *film = NULL;
   const vlFilmDef def = film_of(v);
@@ -436,7 +436,7 @@ static void leave_out_rare(Verify *v) {
 }
 
 vlResult verify_measure(Verify *v, vlError *error) {
-  const vlResult result = each_run(v, VERIFY_TRIAL, error);
+  const vlResult result = verify_render(v, VERIFY_TRIAL, error);
   for (int i = 0; i < v->run_count; i++)
     if (v->runs[i].against >= 0 && v->runs[v->runs[i].against].left_out)
       v->runs[i].left_out = true;
@@ -445,8 +445,4 @@ vlResult verify_measure(Verify *v, vlError *error) {
   if (result == VL_OK)
     leave_out_rare(v);
   return result;
-}
-
-vlResult verify_render(Verify *v, int look, vlError *error) {
-  return each_run(v, look, error);
 }

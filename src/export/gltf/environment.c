@@ -206,7 +206,7 @@ static void filter_row(void *user, uint32_t row, VL_UNUSED uint32_t worker) {
     for (uint32_t k = 0; k < LOBE_SAMPLES; k++) {
       float u = ((float)k + 0.5f) / LOBE_SAMPLES, c2 = (1 - u) / (1 + (a2 - 1) * u),
             c = __builtin_sqrtf(c2);
-      vlSinCos turn = vl_sincos_turn(vl_fraction_float(vl_reverse_bits(k)));
+      vlSinCos turn = vl_sincos_turn(vl_unit_float(vl_reverse_bits(k)));
       float r = 2 * c * vl_safe_sqrt(1 - c2), z = 2 * c2 - 1, inner = c2 * (a2 - 1) + 1;
       if (!(z > 0))
         continue;

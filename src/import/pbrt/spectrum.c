@@ -93,25 +93,21 @@ static bool read_file(vlImport *import, const vlParam *param, vlSpectrum *spectr
 }
 
 static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spectrum) {
-  const char *text = param->strings.items[0], *names[512];
-  unsigned count = 0;
-  for (const char *known; count < 512 && (known = vl_named_spectrum_name(count)); count++) {
-    if (vl_text_is(known, text)) {
-      *spectrum = vl_spectrum_named(known);
-      return true;
-    }
-    names[count] = known;
+  const char *text = param->strings.items[0];
+  const char *near;
+  const char *known = vl_named_spectrum_find(text, &near);
+  if (known) {
+    *spectrum = vl_spectrum_named(known);
+    return true;
   }
   if (strchr(text, '/') || strchr(text, '.'))
     return read_file(import, param, spectrum);
-  const char *near = vl_nearest_name(text, names, count);
   char path[4096];
   if (!near &&
       vl_import_find(import, param->source, text, path, sizeof path) != VL_FOUND_TOO_LONG)
     return read_file(import, param, spectrum);
-  return vl_import_wrong(import, param->source,
-                         "no spectrum is named \"%s\" (did you mean \"%s\"?)",
-                         vl_short_text(text).text, near ? near : "");
+  return vl_import_wrong(import, param->source, "no spectrum is named \"%s\"%s",
+                         vl_short_text(text).text, vl_hint(near).text);
 }
 
 bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {

@@ -226,8 +226,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission,
   vl_closest_hits(t, n, camera, p, hits);
   if (!camera)
     t->batch->bounce_rays += n;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index,
-                     vl_bounce_dimension(depth) + VL_DIM_FLIGHT, u);
+  vl_draw_1d(t, n, p, vl_bounce_dimension(depth) + VL_DIM_FLIGHT, u);
   VL_ROW float odds[VL_FLIGHTS], time[VL_FLIGHTS] = {0};
   vlTravel k;
   vl_travel_start(&k);

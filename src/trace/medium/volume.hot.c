@@ -104,10 +104,8 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
   vlPaths *p = &in->paths;
   vlVolumeRows *rows = &in->rows;
   vlNumbers u;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE,
-                     u.u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV,
-                     u.u1, u.u2);
+  vl_draw_1d(t, n, p, dimension + VL_DIM_ROULETTE, u.u0);
+  vl_draw_2d(t, n, p, dimension + VL_DIM_BSDF_UV, u.u1, u.u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     float most = vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]);

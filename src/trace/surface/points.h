@@ -58,10 +58,6 @@ static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
 vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape,
                          uint32_t prim, uint32_t instance, float t);
-static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint32_t shape,
-                                  uint32_t prim, uint32_t instance, float t) {
-  return vl_point_at_time(world, 0.0f, o, d, shape, prim, instance, t);
-}
 
 /* Axes (full widths) of the ellipse in which a cone around a ray of direction d meets a surface
  * with normal g. width: the cone's width there. The axis along the ray is at most 64 times as

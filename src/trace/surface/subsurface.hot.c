@@ -108,10 +108,8 @@ static float cut_probe(const vlWorld *world, vlPaths *p, uint32_t j, vlVec3 o, v
 static void aim_probes(const vlTracing *t, uint32_t n, uint32_t dimension, const vlEntries *x,
                        vlPaths *p, float *length) {
   vlNumbers u;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS,
-                     u.u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE, u.u1,
-                     u.u2);
+  vl_draw_1d(t, n, p, dimension + VL_DIM_PROBE_AXIS, u.u0);
+  vl_draw_2d(t, n, p, dimension + VL_DIM_PROBE, u.u1, u.u2);
   for (uint32_t j = 0; j < n; j++) {
     Entry e = entry_of(t->world, x, j);
     int hero = vl_volume_hero(t, p, j);
@@ -311,8 +309,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
 static void leave(vlTracing *t, uint32_t n, uint32_t dimension, const vlHits *hits,
                   const vlSurface *f, vlPaths *p, vlVolumeRows *rows, uint8_t *alive) {
   vlNumbers u;
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV,
-                     u.u1, u.u2);
+  vl_draw_2d(t, n, p, dimension + VL_DIM_EXIT_UV, u.u1, u.u2);
   for (uint32_t i = 0; i < n; i++) {
     vl_note_unsound(t, p, i);
     vlVec3 local = vl_warp_cosine_hemisphere(u.u1[i], u.u2[i]);

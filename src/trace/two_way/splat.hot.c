@@ -47,8 +47,7 @@ void vl_look_from(const vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dim
     return;
   }
   if (lens)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV,
-                       u.u1, u.u2);
+    vl_draw_2d(t, n, p, dimension + VL_DIM_LIGHT_UV, u.u1, u.u2);
   for (uint32_t i = 0; i < n; i++)
     views[i] = sample_camera(vl_eye_of(t, p->lane[i]), vl_row3(at, i), lens ? u.u1[i] : 0.0f,
                              lens ? u.u2[i] : 0.0f);

@@ -1,7 +1,8 @@
 /* test/failing_allocator.h: an allocator that counts the blocks held and whose n-th call fails.
  *     failAllocator state = {.fail_at = n};             n counts from 1; 0: no call fails
  *     def.allocator = fail_allocator(&state);
- * Its memory is not empty: what must be zero or a number is not so by chance.
+ * Its memory is not empty: what must be zero or a number is not so by chance. Nor does it stay
+ * as it was after its release: what is still used then shows.
  * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure
  * must return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code
  * after it runs with partly built data. */
@@ -9,6 +10,8 @@
 #define TEST_FAILING_ALLOCATOR_H
 
 #include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,23 +32,32 @@ static inline bool fail_now(failAllocator *state) {
   return true;
 }
 
+/* Before each block lies its size. */
+enum { FAIL_HEADER = 2 * sizeof(max_align_t), FAIL_FILL = 0xff /* NaN, -1, no address */ };
+
 static inline void *fail_allocate(void *user, size_t size) {
   failAllocator *state = user;
   if (fail_now(state))
     return NULL;
-  void *block = malloc(size);
-  if (block) {
-    memset(block, 0xff, size); /* NaN, -1, no address */
-    atomic_fetch_add(&state->blocks, 1);
-  }
-  return block;
+  char *start = size < SIZE_MAX - FAIL_HEADER ? malloc(FAIL_HEADER + size) : NULL;
+  if (!start)
+    return NULL;
+  memcpy(start, &size, sizeof size);
+  memset(start + FAIL_HEADER, FAIL_FILL, size);
+  atomic_fetch_add(&state->blocks, 1);
+  return start + FAIL_HEADER;
 }
 
 static inline void fail_release(void *user, void *block) {
   failAllocator *state = user;
-  if (block)
-    atomic_fetch_sub(&state->blocks, 1);
-  free(block);
+  size_t size;
+  if (!block)
+    return;
+  char *start = (char *)block - FAIL_HEADER;
+  memcpy(&size, start, sizeof size);
+  memset(block, FAIL_FILL, size);
+  atomic_fetch_sub(&state->blocks, 1);
+  free(start);
 }
 
 /* Fails one call: the one after the next n; n < 0: none. */

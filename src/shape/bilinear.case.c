@@ -18,6 +18,12 @@ const ShapeCase bilinear_shape = {
                               "\"point2 uv\" [0 .1 .7 0 .2 .9 .9 .8]",
                 .area = 1.3832461,
             },
+            /* with normals of its own, which turn in different ways along u and along v */
+            {
+                .parameters = "\"point3 P\" [-.5 -.5 .25 .5 -.5 -.25 -.5 .5 -.25 .5 .5 .25] "
+                              "\"normal N\" [.3 .1 1 -.2 .4 1 .1 -.3 1 0 .2 1]",
+                .area = 1.0790366,
+            },
         },
     .parameters =
         {

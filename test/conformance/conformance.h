@@ -120,15 +120,16 @@ static vlScene *load_text(vlContext *in, const char *text, vlError *error) {
   return scene;
 }
 
-/* Renders a scene by its settings and destroys it. Null, and the reason: it cannot be
- * rendered. */
-static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
+/* Renders a scene by its settings and destroys it. previous: a world that ends as soon as the
+ * scene's world is built; may be null. Null, and the reason: it cannot be rendered. */
+static vlImage *render_after(vlContext *in, vlScene *scene, vlWorld *previous, vlError *error) {
   vlWorld *world = NULL;
   vlFilm *film = NULL;
   vlImage *image = NULL;
   vlCamera camera;
   vlSceneDefs *defs = vl_scene_defs(scene);
   vlResult result = vl_world_build(scene, &defs->build, &world, error);
+  vl_world_destroy(previous);
   if (result == VL_OK)
     result = vl_camera_make(&defs->camera, &camera, NULL, error);
   if (result == VL_OK)
@@ -146,6 +147,9 @@ static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
   vl_world_destroy(world);
   vl_scene_destroy(scene);
   return image;
+}
+static vlImage *render_scene(vlContext *in, vlScene *scene, vlError *error) {
+  return render_after(in, scene, NULL, error);
 }
 
 /* The scene of a text, and the image of a scene made from it, both of which must be. */

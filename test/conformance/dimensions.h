@@ -49,10 +49,12 @@ static void numbers_written_down(void *user, const vlOwnSamples *s) {
 }
 
 /* Paths of many bounces: on rough and smooth surfaces, through glass, a coat and fog, and of
- * tracers from the camera alone in a body in which light scatters. */
+ * tracers from the camera alone in bodies in which light scatters, from one to the next. */
 static const char many_bounces[] = HEAD
     "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.1 .1 .1] "
-    "\"rgb sigma_s\" [2 2 2] WorldBegin " LIGHTS GROUND
+    "\"rgb sigma_s\" [2 2 2] WorldBegin " LIGHTS
+    "AttributeBegin Material \"%s\" "
+    "Shape \"bilinearmesh\" \"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3] AttributeEnd\n"
     "AttributeBegin Material \"dielectric\" Translate -.5 0 0 Shape \"sphere\" "
     "\"float radius\" .4 AttributeEnd\n"
     "AttributeBegin Material \"%s\" Translate .5 0 0 Shape \"sphere\" "
@@ -69,7 +71,8 @@ static void check_dimensions(vlTracer tracer, const char *name) {
       .name = "written down", .numbers = numbers_written_down, .user = &numbers};
   static char text[TEXT];
   const bool one_way = tracer == VL_TRACER_PATH || tracer == VL_TRACER_VOLPATH;
-  snprintf(text, sizeof text, many_bounces, one_way ? "subsurface" : "diffuse");
+  const char *body = one_way ? "subsurface" : "diffuse";
+  snprintf(text, sizeof text, many_bounces, body, body);
   vlScene *scene = need_scene(text);
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);

@@ -1,6 +1,7 @@
 /* conformance/edited.h: the law of worlds that are built from previous ones: a scene whose
  * parameter has changed gives the image that it gives without a previous world, whether it was
- * loaded again or its objects were given other defs. */
+ * loaded again or its objects were given other defs, and also when the previous world is gone
+ * before anything is rendered. */
 #ifndef TEST_CONFORMANCE_EDITED_H
 #define TEST_CONFORMANCE_EDITED_H
 
@@ -51,15 +52,16 @@ static const struct {
                 {"emission", set_emission_from}, {"lights", set_light_from},
                 {"media", set_medium_from},      {"shapes", set_shape_from}};
 
-/* Renders the scene from the previous world and destroys it. */
+/* Renders the scene from the previous world and destroys it. last: the previous world, too, and
+ * as soon as it has been built from. */
 static void check_from_previous(const char *family, const char *kind, const char *what,
-                                vlScene *scene, const vlWorld *previous,
+                                vlScene *scene, vlWorld *previous, bool last,
                                 const float pixels[PIXELS]) {
   vlError error = {0};
   vlSceneDefs *defs = vl_scene_defs(scene);
   defs->build.previous = previous;
   defs->render.spp = SAMPLES;
-  vlImage *image = render_scene(context, scene, &error);
+  vlImage *image = render_after(context, scene, last ? previous : NULL, &error);
   if (!image)
     broken(family, kind, "%s: with a previous world: %s", what, error.message);
   else if (memcmp(vl_image_const_pixels(image), pixels, PIXELS * sizeof *pixels) != 0)
@@ -86,13 +88,12 @@ static void check_edited(const char *family, const char *kind, const char *name,
       while (editable[i].set(scene, changed, edited + 1))
         edited++;
   snprintf(what, sizeof what, "\"%.100s\" changed, loaded again", name);
-  check_from_previous(family, kind, what, changed, world, pixels);
+  check_from_previous(family, kind, what, changed, world, !edited, pixels);
   snprintf(what, sizeof what, "\"%.100s\" changed, by other defs", name);
   if (edited)
-    check_from_previous(family, kind, what, scene, world, pixels);
+    check_from_previous(family, kind, what, scene, world, true, pixels);
   else
     vl_scene_destroy(scene);
-  vl_world_destroy(world);
 }
 
 /* ---- one image, used in different ways --------------------------------------------------- */

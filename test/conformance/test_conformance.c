@@ -13,6 +13,7 @@
 #include "failed_saves.h"
 #include "far_lamps.h"
 #include "files.h"
+#include "fog.h"
 #include "footprints.h"
 #include "formulas.h"
 #include "furnaces.h"
@@ -26,6 +27,7 @@
 #include "materials.h"
 #include "mirror_depths.h"
 #include "mirrored_textures.h"
+#include "moving.h"
 #include "neighbours.h"
 #include "parameters.h"
 #include "pbrt_defaults.h"
@@ -50,6 +52,7 @@
 #include "textures.h"
 #include "transport.h"
 #include "turned.h"
+#include "unseen.h"
 #include "vignetting.h"
 #include "wavelengths.h"
 
@@ -110,6 +113,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_surfaces),
       cmocka_unit_test(laws_of_instances),
+      cmocka_unit_test(moving_meshes),
+      cmocka_unit_test(unseen_shapes),
       cmocka_unit_test(laws_of_bumps),
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_footprints),
@@ -148,6 +153,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(textures_in_mirrors),
       cmocka_unit_test(widths_after_bounces),
       cmocka_unit_test(laws_of_furnaces),
+      cmocka_unit_test(tracers_in_fog),
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),
       cmocka_unit_test(skies_of_files),

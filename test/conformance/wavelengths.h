@@ -58,6 +58,10 @@ static const char *const floor_in_bands =
     "LookAt 2.2 2 2 .75 -.6 .5 0 1 0 Camera \"perspective\" \"float fov\" 8\n" VIEW("12")
         BAND_LIGHTS
     "Material %s Shape \"bilinearmesh\" \"point3 P\" [-3 -.6 3 3 -.6 3 -3 -.6 -3 3 -.6 -3]\n";
+/* In a world with a medium, light goes other ways through the program. */
+#define MEDIUM_ELSEWHERE                                                              \
+  "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MediumInterface \"m\" \"\" " \
+  "Material \"interface\" Translate 0 9 0 Shape \"sphere\" \"float radius\" .1\n"
 /* A floor below the medium, seen from the side. Light comes through another medium, too. */
 static const char *const medium_in_bands =
     "LookAt 0 -1.2 3 0 -2 0 0 1 0 Camera \"orthographic\" "
@@ -228,8 +232,10 @@ static void laws_of_wavelengths(void **state) {
     check_medium_bands(media->rows[k], medium_cases[k]);
   for (uint32_t k = 0; k < tracers->kind_count; k++) {
     const char *name = tracers->rows[k]->name;
-    if (tracer_cases[k]->room_spp)
-      check_beside_floor("tracers", name, name, "Material \"diffuse\" " BALL);
+    if (!tracer_cases[k]->room_spp)
+      continue;
+    check_beside_floor("tracers", name, name, "Material \"diffuse\" " BALL);
+    check_beside_floor("tracers", name, name, "Material \"diffuse\" " BALL MEDIUM_ELSEWHERE);
   }
   expect_no_failures();
 }

@@ -12,6 +12,11 @@ typedef void vlParametersFn(vlTextureRun *r, const vlWorldMaterial *m);
 /* Those of kinds whose inputs others have, too. */
 vlParametersFn vl_parameters_diffuse, vl_parameters_conductor, vl_parameters_dielectric;
 
+/* Change the shading normals by a bump map, of which the node is the height, and by a normal
+ * map. The first uses VL_BUMP_ROWS rows. */
+void vl_stage_bump(vlTextureRun *r, int32_t node);
+void vl_stage_normal_map(vlTextureRun *r, int32_t image);
+
 /* Parts of the functions above. vl_stage_layers runs after eta, k and roughness are evaluated;
  * the parts for translucent, subsurface and hair run after the reflectance. The coat's normal
  * of the principled material stays in world space until vl_stage_coat_frames. */

@@ -1,125 +1,13 @@
-/* material/material.hot.c: shading of a run of lanes with one material: bump and normal
- * maps, BSDF parameters from textures; then shading frames for all lanes. */
+/* material/material.hot.c: the parameters of the BSDFs, from the textures of each run of lanes
+ * with one material; then shading frames, and the BSDFs of each run of one kind. */
 #include "material/inputs.hot.h"
 #include "material/kinds.row.h"
 #include "velo/schema.h"
 #include "velo/shape.h"
 
-/* Shifts of uv for bump maps. Those below MIN_STEP are a few roundings of a uv near 1 (6e-8):
- * the difference of heights would be noise. DEFAULT_STEP is pbrt's for surfaces without a
- * footprint. */
-#define MIN_STEP 1e-6f
-#define DEFAULT_STEP 0.0005f
 /* Squared sine (1e-6 squared) of the angle between a tangent and the normal. Below it, the
  * tangent is mostly rounding error. */
 #define PARALLEL 1e-12f
-
-/* ---- bump and normal maps: both change the shading normal and dpdu ----------------------- */
-
-/* n, or -n, on the side of `side`. */
-static vlVec3 facing(vlVec3 n, vlVec3 side) {
-  return vl_dot(n, side) < 0.0f ? vl_neg(n) : n;
-}
-
-/* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or
- * uv. */
-static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
-  vlVec2 b = vl_corner_weights(c, i, vl_row3(&f->p, i));
-  vlVec3 n = vl_corner(c->n, 0, i), m1 = vl_sub(vl_corner(c->n, 1, i), n),
-         m2 = vl_sub(vl_corner(c->n, 2, i), n);
-  float length = vl_length(vl_add(n, vl_add(vl_mul(m1, b.x), vl_mul(m2, b.y))));
-  float u1 = c->uv[2][i] - c->uv[0][i], v1 = c->uv[3][i] - c->uv[1][i];
-  float u2 = c->uv[4][i] - c->uv[0][i], v2 = c->uv[5][i] - c->uv[1][i];
-  float det = (u1 * v2 - v1 * u2) * length;
-  float scale = f->uv_scale[i] > 0.0f && vl_abs(det) > 0.0f ? 1.0f / det : 0.0f;
-  vlVec3 ns = vl_row3(&f->n, i);
-  vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
-  vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
-  du = vl_sub(du, vl_mul(ns, vl_dot(du, ns)));
-  dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
-  vl_set_lane3(f->dn[0], f->dn[1], f->dn[2], i, du);
-  vl_set_lane3(f->dn[3], f->dn[4], f->dn[5], i, dv);
-}
-
-/* A tangent of a flat face, turned as its normal g is turned to n: a tangent of the smooth
- * surface that the vertex normals stand for. Without it, a bump map would show the faces. */
-static vlVec3 turned(vlVec3 tangent, vlVec3 g, vlVec3 n) {
-  float share = vl_dot(n, tangent) / (1.0f + vl_dot(g, n));
-  return vl_sub(tangent, vl_mul(vl_add(g, n), share));
-}
-
-/* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in
- * v; h' by finite differences (pbrt book 10.5.3). */
-static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
-  vlSurface *f = &r->at->surface;
-  float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r),
-        *step = vl_texture_row(r);
-  float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r),
-        *y = vl_texture_row(r), *z = vl_texture_row(r);
-  vl_texture_float(r, node, h);
-  for (uint32_t i = r->first; i < r->last; i++) {
-    float w = 0.5f * f->width[i] * f->uv_scale[i];
-    step[i] = w > MIN_STEP ? w : DEFAULT_STEP;
-  }
-  r->shift_u = su;
-  r->shift_v = sv;
-  r->shift_x = x;
-  r->shift_y = y;
-  r->shift_z = z;
-  for (uint32_t i = r->first; i < r->last; i++) {
-    su[i] = step[i];
-    sv[i] = 0.0f;
-    x[i] = step[i] * f->dpdu.x[i];
-    y[i] = step[i] * f->dpdu.y[i];
-    z[i] = step[i] * f->dpdu.z[i];
-  }
-  vl_texture_float(r, node, hu);
-  for (uint32_t i = r->first; i < r->last; i++) {
-    su[i] = 0.0f;
-    sv[i] = step[i];
-    x[i] = step[i] * f->dpdv.x[i];
-    y[i] = step[i] * f->dpdv.y[i];
-    z[i] = step[i] * f->dpdv.z[i];
-  }
-  vl_texture_float(r, node, hv);
-  r->shift_u = NULL;
-  for (uint32_t i = r->first; i < r->last; i++) {
-    if (r->world->shapes.items[r->at->hits.shape[i]].triangles)
-      triangle_normal_slopes(&r->s->corners, f, i);
-    vlVec3 n = vl_row3(&f->n, i);
-    vlVec3 g = facing(vl_row3(&f->g, i), n);
-    vlVec3 du = turned(vl_row3(&f->dpdu, i), g, n);
-    vlVec3 dv = turned(vl_row3(&f->dpdv, i), g, n);
-    du = vl_add(du, vl_mul(n, (hu[i] - h[i]) / step[i]));
-    dv = vl_add(dv, vl_mul(n, (hv[i] - h[i]) / step[i]));
-    du = vl_add(du, vl_mul(vl_lane3(f->dn[0], f->dn[1], f->dn[2], i), h[i]));
-    dv = vl_add(dv, vl_mul(vl_lane3(f->dn[3], f->dn[4], f->dn[5], i), h[i]));
-    vlVec3 m = vl_cross(du, dv);
-    if (!(vl_length2(m) > 0.0f))
-      continue;
-    m = facing(vl_normalize(m), n);
-    vl_set_row3(&f->n, i, m);
-    vl_set_row3(&f->dpdu, i, du);
-  }
-}
-
-static void normal_map(vlTextureRun *r, int32_t image) {
-  vlSurface *f = &r->at->surface;
-  const vlMipmap *mip = r->world->images.items[image].mipmap;
-  if (mip->channels < 3)
-    return;
-  for (uint32_t i = r->first; i < r->last; i++) {
-    vlTexel t = vl_bilinear(mip, f->u[i], 1.0f - f->v[i], VL_WRAP_REPEAT);
-    vlVec3 local = vl_normalize(vl_vec3(2 * t.c[0] - 1, 2 * t.c[1] - 1, 2 * t.c[2] - 1));
-    vlVec3 n = vl_row3(&f->n, i), u = vl_row3(&f->dpdu, i);
-    vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n))));
-    vlFrame frame = {x, vl_cross(n, x), n};
-    vlVec3 m = vl_normalize(vl_from_local(frame, local));
-    if (!(vl_length2(m) > 0.0f))
-      continue;
-    vl_set_row3(&f->n, i, m);
-  }
-}
 
 /* ---- parameters -------------------------------------------------------------------------- */
 
@@ -280,9 +168,9 @@ static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
 static void evaluate(vlTextureRun *r, const vlWorldMaterial *m) {
   r->top = 0;
   if (m->displacement >= 0)
-    bump(r, m->displacement);
+    vl_stage_bump(r, m->displacement);
   if (m->normal_map >= 0)
-    normal_map(r, m->normal_map);
+    vl_stage_normal_map(r, m->normal_map);
   r->top = 0;
   parameters[m->bsdf](r, m);
   if (r->at->shade.tint)
@@ -329,5 +217,105 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *sh
     float wo_z = vl_dot(wo, nn);
     shade->wo[2][i] = wo_z;
     f->side[i] = wo_z < 0.0f ? -f->side[i] : f->side[i];
+  }
+}
+
+void vl_stage_local(uint32_t n, const vlVertices *at, const vlVec3Row *w,
+                    float wi[3][VL_ROW_SIZE]) {
+  const vlShade *sh = &at->shade;
+  const vlSurface *f = &at->surface;
+  uint32_t padded = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float x = w->x[i], y = w->y[i], z = w->z[i];
+    wi[0][i] = x * sh->tangent.x[i] + y * sh->tangent.y[i] + z * sh->tangent.z[i];
+    wi[1][i] = x * sh->bitangent.x[i] + y * sh->bitangent.y[i] + z * sh->bitangent.z[i];
+    wi[2][i] = x * f->n.x[i] + y * f->n.y[i] + z * f->n.z[i];
+  }
+}
+
+/* ---- runs of one BSDF -------------------------------------------------------------------- */
+
+/* Lanes [first, last) that share a BSDF kind. A run may start at any lane, because a lane's
+ * result does not depend on its place in the vector loop. */
+typedef struct Run {
+  vlBsdfKind kind;
+  uint32_t last;
+} Run;
+
+/* The run that begins at lane `first` of n. */
+static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
+  Run r = {world->materials.items[h->material[first]].bsdf, first + 1};
+  while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind)
+    r.last++;
+  return r;
+}
+
+/* The row from lane `first` on. Without const, because vlBsdfParams has the rows that kernels
+ * write in the same types; evaluation and sampling only read these. */
+static float *from(const float *row, uint32_t first) {
+  return (float *)(uintptr_t)row + first;
+}
+static vlBsdfDirections directions(const float w[3][VL_ROW_SIZE], uint32_t first) {
+  return (vlBsdfDirections){from(w[0], first), from(w[1], first), from(w[2], first)};
+}
+static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32_t first) {
+  const vlShade *s = &at->shade;
+  vlBsdfParams p;
+  for (int c = 0; c < 4; c++) {
+    p.reflectance[c] = from(s->reflectance[c], first);
+    p.tint[c] = s->tint ? s->tint->at[c] + first : NULL;
+    p.eta[c] = from(s->eta[c], first);
+    p.k[c] = from(s->k[c], first);
+    p.lambda[c] = world->def.color == VL_COLOR_RGB ? NULL : at->paths.lambda[c] + first;
+  }
+  for (int k = 0; k < VL_BSDF_ROWS; k++)
+    p.own[k] = from(s->own[k], first);
+  p.alpha_x = from(s->alpha_x, first);
+  p.alpha_y = from(s->alpha_y, first);
+  p.eta_s = from(s->eta_s, first);
+  p.coat = (const vlCoatTable **)(uintptr_t)(s->coat + first);
+  p.seed = s->seed + first;
+  p.measured = s->measured + first;
+  return p;
+}
+
+void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
+                   const float wo[3][VL_ROW_SIZE], vlBsdfValues *to) {
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &at->hits, first, n);
+    vlBsdfParams params = params_of(t->world, at, first);
+    float *const value[4] = {to->value[0] + first, to->value[1] + first, to->value[2] + first,
+                             to->value[3] + first};
+    t->bsdf->eval[r.kind](r.last - first, &params, directions(wo, first),
+                          directions((const float(*)[VL_ROW_SIZE])to->wi, first), value,
+                          to->pdf + first);
+    first = r.last;
+  }
+}
+
+void vl_stage_bsdf_samples(const vlTracing *t, uint32_t n, uint32_t dimension,
+                           const vlVertices *at, vlBsdfSamples *to) {
+  const vlPaths *p = &at->paths;
+  vlNumbers u;
+  vl_draw_1d(t, n, p, dimension + VL_DIM_LOBE, u.u0);
+  vl_draw_2d(t, n, p, dimension + VL_DIM_BSDF_UV, u.u1, u.u2);
+  /* a run is padded to whole lanes from its own first one: the last run reads past VL_PAD(n) */
+  for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
+    u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
+  for (uint32_t first = 0; first < n;) {
+    Run r = next_kind(t->world, &at->hits, first, n);
+    vlBsdfParams params = params_of(t->world, at, first);
+    vlBsdfRandom random = {u.u0 + first, u.u1 + first, u.u2 + first};
+    vlBsdfSampled out = {.wi = {to->wi[0] + first, to->wi[1] + first, to->wi[2] + first},
+                         .pdf = to->pdf + first,
+                         .flags = to->flags + first,
+                         .eta_scale = to->eta_scale + first};
+    for (int c = 0; c < 4; c++)
+      out.weight[c] = to->weight[c] + first;
+    t->bsdf->sample[r.kind](r.last - first, &params, directions(at->shade.wo, first), random,
+                            out);
+    first = r.last;
   }
 }

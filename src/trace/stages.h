@@ -227,7 +227,10 @@ void vl_stage_local(uint32_t n, const vlVertices *at, const vlVec3Row *w,
 /* Evaluates the BSDFs of n vertices for wo (local) and to->wi. */
 void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                    const float wo[3][VL_ROW_SIZE], vlBsdfValues *to);
-/* The same for the vertices' wo and the directions of their light samples. */
+/* Samples them for the vertices' wo, with the random numbers of `dimension`. */
+void vl_stage_bsdf_samples(const vlTracing *t, uint32_t n, uint32_t dimension,
+                           const vlVertices *at, vlBsdfSamples *to);
+/* Evaluates them for the vertices' wo and the directions of their light samples. */
 void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                          const vlLightSamples *light, vlBsdfValues *to);
 /* Whether the value of lane i is not 0; that of no number counts. */

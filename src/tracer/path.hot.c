@@ -4,82 +4,7 @@
 #include "tracer/record.h"
 #include "world/accel/crossed.h"
 
-/* ---- runs of one BSDF -------------------------------------------------------------------- */
-
-/* Lanes [first, last) that share a BSDF kind. A run may start at any lane, because a lane's
- * result does not depend on its place in the vector loop. */
-typedef struct Run {
-  vlBsdfKind kind;
-  uint32_t last;
-} Run;
-
-/* The run that begins at lane `first` of n. */
-static Run next_kind(const vlWorld *world, const vlHits *h, uint32_t first, uint32_t n) {
-  Run r = {world->materials.items[h->material[first]].bsdf, first + 1};
-  while (r.last < n && world->materials.items[h->material[r.last]].bsdf == r.kind)
-    r.last++;
-  return r;
-}
-
-/* The row from lane `first` on. Without const, because vlBsdfParams has the rows that kernels
- * write in the same types; evaluation and sampling only read these. */
-static float *from(const float *row, uint32_t first) {
-  return (float *)(uintptr_t)row + first;
-}
-static vlBsdfDirections directions(const float w[3][VL_ROW_SIZE], uint32_t first) {
-  return (vlBsdfDirections){from(w[0], first), from(w[1], first), from(w[2], first)};
-}
-static vlBsdfParams params_of(const vlWorld *world, const vlVertices *at, uint32_t first) {
-  const vlShade *s = &at->shade;
-  vlBsdfParams p;
-  for (int c = 0; c < 4; c++) {
-    p.reflectance[c] = from(s->reflectance[c], first);
-    p.tint[c] = s->tint ? s->tint->at[c] + first : NULL;
-    p.eta[c] = from(s->eta[c], first);
-    p.k[c] = from(s->k[c], first);
-    p.lambda[c] = world->def.color == VL_COLOR_RGB ? NULL : at->paths.lambda[c] + first;
-  }
-  for (int k = 0; k < VL_BSDF_ROWS; k++)
-    p.own[k] = from(s->own[k], first);
-  p.alpha_x = from(s->alpha_x, first);
-  p.alpha_y = from(s->alpha_y, first);
-  p.eta_s = from(s->eta_s, first);
-  p.coat = (const vlCoatTable **)(uintptr_t)(s->coat + first);
-  p.seed = s->seed + first;
-  p.measured = s->measured + first;
-  return p;
-}
-
 /* ---- direct light ------------------------------------------------------------------------ */
-
-void vl_stage_local(uint32_t n, const vlVertices *at, const vlVec3Row *w,
-                    float wi[3][VL_ROW_SIZE]) {
-  const vlShade *sh = &at->shade;
-  const vlSurface *f = &at->surface;
-  uint32_t padded = VL_PAD(n);
-  /* must vectorise */
-  VL_SIMD
-  for (uint32_t i = 0; i < padded; i++) {
-    float x = w->x[i], y = w->y[i], z = w->z[i];
-    wi[0][i] = x * sh->tangent.x[i] + y * sh->tangent.y[i] + z * sh->tangent.z[i];
-    wi[1][i] = x * sh->bitangent.x[i] + y * sh->bitangent.y[i] + z * sh->bitangent.z[i];
-    wi[2][i] = x * f->n.x[i] + y * f->n.y[i] + z * f->n.z[i];
-  }
-}
-
-void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
-                   const float wo[3][VL_ROW_SIZE], vlBsdfValues *to) {
-  for (uint32_t first = 0; first < n;) {
-    Run r = next_kind(t->world, &at->hits, first, n);
-    vlBsdfParams params = params_of(t->world, at, first);
-    float *const value[4] = {to->value[0] + first, to->value[1] + first, to->value[2] + first,
-                             to->value[3] + first};
-    t->bsdf->eval[r.kind](r.last - first, &params, directions(wo, first),
-                          directions((const float(*)[VL_ROW_SIZE])to->wi, first), value,
-                          to->pdf + first);
-    first = r.last;
-  }
-}
 
 void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at,
                          const vlLightSamples *light, vlBsdfValues *to) {
@@ -204,32 +129,6 @@ static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, fl
   return (vlVec2){width, specular ? smooth : pixel_spread};
 }
 
-/* Samples the BSDFs of n vertices. */
-static void sample_bsdfs(const vlTracing *t, uint32_t n, uint32_t dimension,
-                         const vlVertices *at, vlBsdfSamples *to) {
-  const vlPaths *p = &at->paths;
-  vlNumbers u;
-  vl_draw_1d(t, n, p, dimension + VL_DIM_LOBE, u.u0);
-  vl_draw_2d(t, n, p, dimension + VL_DIM_BSDF_UV, u.u1, u.u2);
-  /* a run is padded to whole lanes from its own first one: the last run reads past VL_PAD(n) */
-  for (uint32_t i = n; i < n + VL_LANES && i < VL_ROW_SIZE; i++)
-    u.u0[i] = u.u1[i] = u.u2[i] = 0.0f;
-  for (uint32_t first = 0; first < n;) {
-    Run r = next_kind(t->world, &at->hits, first, n);
-    vlBsdfParams params = params_of(t->world, at, first);
-    vlBsdfRandom random = {u.u0 + first, u.u1 + first, u.u2 + first};
-    vlBsdfSampled out = {.wi = {to->wi[0] + first, to->wi[1] + first, to->wi[2] + first},
-                         .pdf = to->pdf + first,
-                         .flags = to->flags + first,
-                         .eta_scale = to->eta_scale + first};
-    for (int c = 0; c < 4; c++)
-      out.weight[c] = to->weight[c] + first;
-    t->bsdf->sample[r.kind](r.last - first, &params, directions(at->shade.wo, first), random,
-                            out);
-    first = r.last;
-  }
-}
-
 /* The rays that leave n vertices, ray i from vertex i, with Russian roulette by the numbers u.
  * alive: 1 for those that go on; broken: 1 where the throughput is no number. Sets all of the
  * rays but what remains the same along a path. */
@@ -288,7 +187,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   const vlPaths *p = &at->paths;
   float u[VL_ROW_SIZE], broken[VL_ROW_SIZE];
   uint32_t alive[VL_ROW_SIZE], count = 0;
-  sample_bsdfs(t, n, dimension, at, samples);
+  vl_stage_bsdf_samples(t, n, dimension, at, samples);
   vl_draw_1d(t, n, p, dimension + VL_DIM_ROULETTE, u);
   make_rays(t, n, depth, at, samples, u, next, alive, broken);
   for (uint32_t i = 0; i < n; i++) {

@@ -1,12 +1,15 @@
 /* test/render/test_paths.c: the recorded paths of a pixel: their contributions sum to the
  * samples that a film adds, for surfaces, media, subsurface materials, lenses, and in RGB;
- * densities and weights of a known lamp; chains of vertices; wrong calls; cancelling. */
+ * densities and weights of a known lamp; chains of vertices; names of images; wrong calls;
+ * cancelling. */
 #include <pthread.h>
 
 #include "loaded.h"
 #include "render/shots.h"
+#include "velo/edit.h"
 #include "velo/paths.h"
 #include "velo/shape_kinds.h"
+#include "velo/texture.h"
 #include "velo/tracer.h"
 
 enum { SIDE = 24, COUNT = 8 };
@@ -331,6 +334,38 @@ static void densities(void **state) {
   }
 }
 
+/* A floor of one image, or of its tint, tells the image. */
+static void names_of_images(void **state) {
+  (void)state;
+  for (int tinted = 0; tinted < 2; tinted++) {
+    Stage s = floor_stage(true);
+    const vlMaterialId floor = {1};
+    vlMaterialDef material = *vl_scene_material(s.scene, floor);
+    vlTextureDef leaf = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
+    leaf.path = VELO_SOURCE_DIR "/scenes/features/textures/leaf.png";
+    material.reflectance.texture = vl_scene_add_texture(s.scene, &leaf);
+    if (tinted) {
+      vlTextureDef tint = vl_default_texture_def(VL_TEXTURE_SCALE, true);
+      tint.spectrum_a.texture = material.reflectance.texture;
+      material.reflectance.texture = vl_scene_add_texture(s.scene, &tint);
+    }
+    assert_int_equal(vl_scene_set_material(s.scene, floor, &material, NULL), VL_OK);
+    vlWorld *world = NULL;
+    vlCamera camera;
+    assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
+    assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
+    s.render.share_samples = false;
+    vlPixelPaths *paths = trace(world, &camera, &s.film, &s.render, 5, 5, 1);
+    const vlPathVertex *v = &paths->paths[0].vertices[0];
+    assert_string_equal(v->texture, tinted ? "scale" : "image");
+    assert_non_null(v->image);
+    assert_string_equal(v->image, leaf.path);
+    vl_pixel_paths_destroy(paths);
+    vl_world_destroy(world);
+    stage_close(&s);
+  }
+}
+
 static void wrong_calls(void **state) {
   (void)state;
   Loaded l;
@@ -397,6 +432,7 @@ static void cancelled(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sums_of_own_samples), cmocka_unit_test(sums_of_shared_samples),
-      cmocka_unit_test(densities), cmocka_unit_test(wrong_calls), cmocka_unit_test(cancelled)};
+      cmocka_unit_test(densities),           cmocka_unit_test(names_of_images),
+      cmocka_unit_test(wrong_calls),         cmocka_unit_test(cancelled)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,6 +37,16 @@ vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t li
   return code;
 }
 
+vlResult vl_fail_source(vlError *error, vlResult code, vlSource source, const char *format,
+                        ...) {
+  va_list args;
+  va_start(args, format);
+  if (error)
+    set_error(error, code, source.file, source.line, source.column, format, args);
+  va_end(args);
+  return code;
+}
+
 vlResult vl_fail_argument(vlError *error, const char *format, ...) {
   char text[sizeof error->message];
   VL_FORMAT(text, format);

@@ -5,6 +5,7 @@
 
 #include "base/attributes.h"
 #include "velo/base.h"
+#include "velo/scene_base.h"
 
 /* End of the message about a def that was not made by the default function of this ABI
  * version. */
@@ -14,6 +15,9 @@ vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) VL_PRIN
 /* vl_fail with a source location; file may be null. */
 vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line,
                     uint32_t column, const char *format, ...) VL_PRINTF(6, 7);
+/* The same with the place of a scene's text. */
+vlResult vl_fail_source(vlError *error, vlResult code, vlSource source, const char *format, ...)
+    VL_PRINTF(4, 5);
 /* Fills in VL_ERROR_ARGUMENT. */
 vlResult vl_fail_argument(vlError *error, const char *format, ...) VL_PRINTF(2, 3);
 /* Fills in VL_ERROR_MEMORY with its common message. */

@@ -35,6 +35,9 @@ typedef struct vlCameraFile {
 /* ---- reading ----------------------------------------------------------------------------- */
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) VL_PRINTF(2, 3);
+/* UNSUPPORTED: the message begins with the dialect's name and "cannot hold". */
+vlResult vl_camera_cannot_hold(const vlCameraFile *file, const char *format, ...)
+    VL_PRINTF(2, 3);
 /* Like vl_camera_wrong, with a location. line is 0 if it is unknown. */
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column,
                             const char *format, ...) VL_PRINTF(4, 5);

@@ -52,10 +52,8 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
   assert(is_refusable(field));
   if (!present || vl_camera_drops(file, field))
     return VL_OK;
-  return vl_fail_at(
-      file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-      "%s cannot hold this camera's \"%s\"; to leave it out, drop it by that name",
-      file->dialect, field);
+  return vl_camera_cannot_hold(
+      file, "this camera's \"%s\"; to leave it out, drop it by that name", field);
 }
 
 /* The same view with the image mirrored horizontally: negates the x axis. For left-handed
@@ -80,8 +78,7 @@ static vlResult make_rigid(const vlCameraFile *file, vlCamera *camera) {
   /* 1e-9: numbers of ten digits */
   if (vl_rotation_error(m) < 1e-9 && vl_determinant3(m) > 0.0)
     return VL_OK;
-  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                    "%s cannot hold a pose that scales or mirrors", file->dialect);
+  return vl_camera_cannot_hold(file, "a pose that scales or mirrors");
 }
 
 /* Makes the camera. Refuses any property that `holds` does not include. */
@@ -130,13 +127,10 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def) {
   const char *projection = vl_projection_name(def->projection);
   if (def->distortion == VL_DISTORTION_NONE)
-    return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-                      "%s cannot hold the %s projection with these parameters", file->dialect,
-                      projection);
-  return vl_fail_at(
-      file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0,
-      "%s cannot hold the %s projection with %s distortion and these coefficients",
-      file->dialect, projection, vl_distortion_row(def->distortion)->title);
+    return vl_camera_cannot_hold(file, "the %s projection with these parameters", projection);
+  return vl_camera_cannot_hold(file,
+                               "the %s projection with %s distortion and these coefficients",
+                               projection, vl_distortion_row(def->distortion)->title);
 }
 
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) {

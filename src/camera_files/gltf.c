@@ -275,8 +275,7 @@ static vlResult write_gltf(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCamera *c = &fit->camera;
   Numbers n = numbers_of(c);
   if (shears(n.matrix))
-    return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
-                      "gltf cannot hold a pose that shears");
+    return vl_camera_cannot_hold(fit->file, "a pose that shears");
   /* glTF requires a near plane, and a far plane of orthographic cameras; the extras record that
    * the camera has none */
   double near_plane =

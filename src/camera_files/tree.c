@@ -16,6 +16,13 @@ vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, 0, 0, "%s", message);
 }
 
+vlResult vl_camera_cannot_hold(const vlCameraFile *file, const char *format, ...) {
+  char message[400];
+  VL_FORMAT(message, format);
+  return vl_fail_at(file->error, VL_ERROR_UNSUPPORTED, file->path, 0, 0, "%s cannot hold %s",
+                    file->dialect, message);
+}
+
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column,
                             const char *format, ...) {
   char message[400];

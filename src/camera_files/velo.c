@@ -455,8 +455,7 @@ vlResult vl_camera_write_velo(const vlFittedCamera *fit, vlCameraText *text) {
   const vlCameraDef *d = &fit->record->camera;
   VL_TRY(vl_camera_refuse(fit->file, "aperture", d->lens.aperture != NULL));
   if (d->projection == VL_PROJECTION_OPTICS)
-    return vl_fail_at(fit->file->error, VL_ERROR_UNSUPPORTED, fit->file->path, 0, 0,
-                      "velo cannot hold a lens of many elements");
+    return vl_camera_cannot_hold(fit->file, "a lens of many elements");
   vl_camera_put_velo(fit->record, text);
   return VL_OK;
 }

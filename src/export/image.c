@@ -55,8 +55,7 @@ const vlImage *vl_export_pixels(vlExport *x, const vlTextureDef *t, vlImage **ow
                        : vl_image_read_named(x->context, NULL, t->path, own, &error);
   /* the scene's image is at fault, not the file that is written: the error is at the image */
   if (r != VL_OK && x->result == VL_OK)
-    x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s",
-                           error.message);
+    x->result = vl_fail_source(x->error, r, t->source, "%s", error.message);
   return *own;
 }
 

@@ -13,9 +13,8 @@
 
 static vlResult material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;
-  return vl_fail_at(b->error, VL_ERROR_SCENE, def->source.file, def->source.line,
-                    def->source.column, "material \"%s\": %s", vl_short_text(def->name).text,
-                    what);
+  return vl_fail_source(b->error, VL_ERROR_SCENE, def->source, "material \"%s\": %s",
+                        vl_short_text(def->name).text, what);
 }
 
 vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats,

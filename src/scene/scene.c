@@ -12,7 +12,7 @@ bool vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *f
     return false;
   char text[sizeof scene->error.message];
   VL_FORMAT(text, format);
-  vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
+  vl_fail_source(&scene->error, code, source, "%s", text);
   return false;
 }
 

@@ -254,9 +254,9 @@ vlResult vl_world_displace(vlWorld *world, const vlScene *scene, const vlShapeDe
     release(&c);
     if (r == VL_ERROR_MEMORY)
       return vl_fail_memory(error);
-    return vl_fail_at(error, r, def->source.file, def->source.line, def->source.column,
-                      "displacement: edges of length %g need more than %d triangles",
-                      (double)def->edge_length, MAX_TRIANGLES);
+    return vl_fail_source(error, r, def->source,
+                          "displacement: edges of length %g need more than %d triangles",
+                          (double)def->edge_length, MAX_TRIANGLES);
   }
   move(&c, world, node);
   find_normals(&c, c.indices.items, c.indices.count / 3);

@@ -28,8 +28,8 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
   size_t n = 3 * (size_t)def->vertices;
   uint32_t steps = vl_world_time_steps(world, def->times[0], def->times[1]);
   if (steps == 0)
-    return vl_fail_at(
-        error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
+    return vl_fail_source(
+        error, VL_ERROR_SCENE, def->source,
         "vertices move from %g to %g seconds, other things from %g to %g: no even "
         "steps lead through all",
         def->times[0], def->times[1], world->time_open, world->time_close);

@@ -292,8 +292,8 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (*memo)
     return *memo - 1;
   if (nesting > MAX_NESTING) {
-    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-               "textures are nested more than %d deep", MAX_NESTING);
+    vl_fail_source(c->error, VL_ERROR_SCENE, def->source,
+                   "textures are nested more than %d deep", MAX_NESTING);
     return -1;
   }
   vlTextureNode node = node_of(def, role);
@@ -319,8 +319,7 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   if (def->spectrum && gives_rgb(&node))
     image_spectrum(c->world, &node);
   if (!weigh(c->world, &node)) {
-    vl_fail_at(c->error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column,
-               "textures are nested too deep");
+    vl_fail_source(c->error, VL_ERROR_SCENE, def->source, "textures are nested too deep");
     return -1;
   }
   int32_t n = push_node(c->world, &node, c->error);

@@ -381,8 +381,8 @@ int32_t vl_texture_image_index(vlWorld *world, const vlScene *scene, const vlTex
   Image image = open_image(scene, def);
   int32_t index = obtain_image(world, &image, def, &inner);
   if (index < 0) {
-    vl_fail_at(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source.file,
-               def->source.line, def->source.column, "%s", inner.message);
+    vl_fail_source(error, inner.code ? inner.code : VL_ERROR_SCENE, def->source, "%s",
+                   inner.message);
     return -1;
   }
   if (!name_image(world, &world->images.items[index], def)) {

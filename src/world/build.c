@@ -212,7 +212,7 @@ void vl_world_warn(const vlWorld *world, vlSource source, const char *format, ..
   char text[512];
   VL_FORMAT(text, format);
   vlError where;
-  vl_fail_at(&where, VL_ERROR_SCENE, source.file, source.line, source.column, " ");
+  vl_fail_source(&where, VL_ERROR_SCENE, source, " ");
   vl_log(world->context, VL_LOG_WARNING, &where, "%s", text);
 }
 
@@ -221,7 +221,7 @@ vlResult vl_world_locate_error(vlSource source, vlError *error, vlResult r) {
     return r;
   char message[sizeof error->message];
   memcpy(message, error->message, sizeof message);
-  return vl_fail_at(error, r, source.file, source.line, source.column, "%s", message);
+  return vl_fail_source(error, r, source, "%s", message);
 }
 
 void vl_world_info(const vlWorld *world, vlWorldInfo *info) {

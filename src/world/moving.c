@@ -189,8 +189,8 @@ static vlResult fill_path(const Motion *motion, float *path, uint32_t steps, vlE
       path[12 * (size_t)k + i] = x;
       const vlSource *source = &motion->source->source;
       if (!isfinite(x))
-        return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
-                          "the instance's motion leaves the range of floats");
+        return vl_fail_source(error, VL_ERROR_SCENE, *source,
+                              "the instance's motion leaves the range of floats");
     }
   }
   return VL_OK;

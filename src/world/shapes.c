@@ -25,8 +25,7 @@ static void store_affine_d(const vlMat4 *m, double r[12]) {
 }
 
 vlResult vl_fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
-  return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line,
-                    def->source.column, "%s", what);
+  return vl_fail_source(error, VL_ERROR_SCENE, def->source, "%s", what);
 }
 
 static vlResult constant_node(vlWorld *world, const vlScene *scene, float value, int32_t *node,
@@ -220,9 +219,10 @@ static vlResult check_reach(const float low[3], const float high[3], const vlSou
                             vlError *error) {
   for (int i = 0; i < 3; i++)
     if (low[i] <= high[i] && !(low[i] > -1e18f && high[i] < 1e18f))
-      return vl_fail_at(error, VL_ERROR_SCENE, source->file, source->line, source->column,
-                        "the shape reaches from %g to %g: rays can be followed to 1e18 at most",
-                        (double)low[i], (double)high[i]);
+      return vl_fail_source(
+          error, VL_ERROR_SCENE, *source,
+          "the shape reaches from %g to %g: rays can be followed to 1e18 at most",
+          (double)low[i], (double)high[i]);
   return VL_OK;
 }
 
@@ -324,8 +324,8 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
     memset(instance, 0, sizeof *instance);
     vlMat4 m = vl_mat4_load(source->world_from_group), inverse;
     if (!vl_mat4_inverse(m, &inverse))
-      return vl_fail_at(error, VL_ERROR_SCENE, source->source.file, source->source.line,
-                        source->source.column, "the instance's transform is singular");
+      return vl_fail_source(error, VL_ERROR_SCENE, source->source,
+                            "the instance's transform is singular");
     instance->group = source->group.index;
     instance->mirrored = vl_determinant3(m.m) < 0;
     store_affine_f(&m, instance->from_group);

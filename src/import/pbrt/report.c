@@ -42,7 +42,7 @@ bool vl_import_fail_memory(vlImport *import) {
 
 static void log_text(vlImport *import, vlLogLevel level, vlSource source, const char *text) {
   vlError where = {0};
-  vl_fail_at(&where, VL_OK, source.file, source.line, source.column, "%s", "");
+  vl_fail_source(&where, VL_OK, source, "%s", "");
   vl_log(import->context, level, &where, "%s", text);
 }
 
@@ -77,7 +77,7 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
   char text[400];
   VL_FORMAT(text, format);
   vlError remark = {0};
-  vl_fail_at(&remark, VL_OK, source.file, source.line, source.column, "%s", text);
+  vl_fail_source(&remark, VL_OK, source, "%s", text);
   import->scene->problem(import->scene->problem_user, &remark);
 }
 

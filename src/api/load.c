@@ -6,7 +6,6 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/machine.h"
 #include "base/text.h"
 #include "base/unset.h"

@@ -12,7 +12,6 @@
 #include "base/text.h"
 #include "camera/aperture.h"
 #include "camera/optics.h"
-#include "camera/parts.h"
 #include "camera_files/files.h"
 #include "sampler/sampler.h"
 #include "velo/projection.h"

@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
-#include "velo/projection.h"
 
 typedef struct {
   const char *name;

@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
-#include "velo/projection.h"
 
 typedef struct {
   const char *name;

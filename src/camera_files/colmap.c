@@ -9,7 +9,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/file.h"
 #include "base/free.h"
 #include "base/text.h"
 #include "camera_files/colmap.h"

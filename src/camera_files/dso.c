@@ -7,7 +7,6 @@
 #include "base/text.h"
 #include "camera_files/fields.h"
 #include "camera_files/lines.h"
-#include "velo/projection.h"
 
 /* The first is that of lines without a name. */
 static const vlLensName models[] = {{"FOV", VL_LENS_FOV, 1, 1},

@@ -11,7 +11,6 @@
 #include "camera_files/fields.h"
 #include "camera_files/formats.h"
 #include "camera_files/trajectory.h"
-#include "velo/own.h"
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
   if ((uint32_t)dialect >= VL_CAMERA_DIALECT_COUNT)

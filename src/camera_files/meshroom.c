@@ -8,7 +8,6 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
-#include "velo/projection.h"
 
 /* Converts a JSON number, or a text that contains a number. */
 static bool number_of(const json_t *value, double *number) {

@@ -9,7 +9,6 @@
 #include "light/spread.h"
 #include "math/warp.h"
 #include "shape/surface_point.h"
-#include "velo/shape.h"
 
 #define DECLARE(kind, row, power, compile, sample, emit, density) \
   vlEmitLight emit;                                               \

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/text.h"
 #include "light/lamp_lookup.h"
 #include "math/approx_double.h"
 #include "math/double3.h"

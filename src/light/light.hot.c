@@ -10,7 +10,6 @@
 #include "math/warp.h"
 #include "shape/surface_point.h"
 #include "texture/lookup.h"
-#include "velo/shape.h"
 
 #define DECLARE(kind, row, power, compile, sample, emit, density) vlSampleLight sample;
 VL_LIGHT_FUNCTIONS(DECLARE)

@@ -6,7 +6,6 @@
 #include "math/warp.h"
 #include "shape/surface_point.h"
 #include "trace/two_way/stages.h"
-#include "velo/shape.h"
 
 enum { ASKED = 32, ANSWERS = 8 };
 

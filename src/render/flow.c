@@ -12,7 +12,6 @@
 #include "camera/moments.h"
 #include "math/double3.h"
 #include "render/channel_pass.h"
-#include "velo/shape.h"
 #include "world/moving.h"
 
 /* A hit hides the point if it is nearer by more than this tolerance, relative to the size of

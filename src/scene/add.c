@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/cookie.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "color/named.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "math/double3.h"
-#include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/faces.h"
 #include "scene/probe.h"

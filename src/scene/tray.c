@@ -5,7 +5,6 @@
 
 #include "scene/faces.h"
 #include "scene/posture.h"
-#include "velo/shape_kinds.h"
 
 bool vl_tray_is(const vlScene *scene, const vlExtent *box, int axis) {
   const double floor_least = 0.8, wall_least = 0.5, ceiling = 0.3, hollow = 3, sheet = 1.3,

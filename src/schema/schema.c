@@ -9,7 +9,6 @@
 #include "base/cookie.h"
 #include "base/text.h"
 #include "base/unset.h"
-#include "color/color.h"
 #include "color/named.h"
 #include "schema/schema.h"
 #include "velo/setting.h"

@@ -10,7 +10,6 @@
 #include "color/sensor.h"
 #include "math/elementary.h"
 #include "schema/schema.h"
-#include "velo/render.h"
 
 vlSensorDef vl_default_sensor_def(void) {
   vlSensorDef def = {.cookie = VL_COOKIE_SENSOR};

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "shape/mesh.h"
-#include "velo/shape.h"
 
 typedef struct Patch {
   double p00[3], p10[3], p01[3], p11[3];

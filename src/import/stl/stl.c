@@ -6,7 +6,6 @@
 
 #include "base/array.h"
 #include "base/bytes.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "import/far.h"
 #include "import/import.h"

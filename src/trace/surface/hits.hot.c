@@ -4,7 +4,6 @@
 #include "math/hash.h"
 #include "trace/stages.h"
 #include "velo/schema.h"
-#include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
 /* The largest number of surfaces that a ray passes; no scene has so many along a ray. */

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "math/double3.h"
-#include "velo/shape.h"
 #include "world/world.h"
 
 /* Within these limits no product of the kernels overflows or underflows. */

@@ -100,9 +100,8 @@ enum { VL_SHUTTER_POINTS = 16 };
  *
  * A sample of pixel row r of `height` rows, counted in the direction of readout, is taken at
  * the time
- *   shutter_open + r/height readout + s (shutter_close - shutter_open); s in [0, 1) is
- *     distributed by the shutter
- * curve. */
+ *   shutter_open + r/height readout + s (shutter_close - shutter_open);
+ * s in [0, 1) is distributed by the shutter curve. */
 typedef struct vlCameraDef {
   uint32_t cookie;
   vlProjection projection; /**< default VL_PROJECTION_PERSPECTIVE */

@@ -113,6 +113,14 @@ vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
 
+/* ---- blocks of a film -------------------------------------------------------------------- */
+
+typedef enum vlFilmCopy { VL_FROM_FILM, VL_TO_FILM } vlFilmCopy;
+/* Copies the sums of a window's pixels between a film and a block's data as stored in the file.
+ * The film has all arrays that its def asks for. Returns the end of the data. */
+void *vl_film_copy_block(const vlFilm *film, const uint32_t window[4], vlFilmCopy way,
+                         void *data);
+
 /* ---- merging ----------------------------------------------------------------------------- */
 
 /* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file.

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/text.h"
 #include "film/file.h"
 
 const char vl_film_magic[8] = {'V', 'E', 'L', 'O', 'F', 'I', 'L', 'M'};
@@ -46,6 +47,34 @@ size_t vl_film_block_head(const vlFilmDef *def, const uint32_t window[4], uint32
   if (range_count && compared && compared->spp)
     head->compared = *compared;
   return sizeof *head + range_count * sizeof(vlSampleSpan) + head->data_size + sizeof(uint32_t);
+}
+
+void *vl_film_copy_block(const vlFilm *film, const uint32_t window[4], vlFilmCopy way,
+                         void *data) {
+  const size_t buckets = film->def.buckets;
+  const struct {
+    void *items;
+    size_t size; /* bytes for a pixel; 0: the film has no such array */
+  } arrays[] = {{film->front, sizeof(vlFilmPixel)},
+                {film->moments[0], film->def.errors ? sizeof(vlFilmMoments) : 0},
+                {film->spectrum.sums[0], buckets * sizeof(vlInt128)},
+                {film->spectrum.weights[0], buckets * sizeof(int64_t)}};
+  const size_t first =
+      (size_t)(window[1] - film->def.crop[1]) * film->width + (window[0] - film->def.crop[0]);
+  char *stored = data;
+  for (size_t k = 0; k < VL_LENGTH(arrays); k++) {
+    const size_t size = arrays[k].size, bytes = (window[2] - window[0]) * size;
+    for (uint32_t y = window[1]; size && y < window[3]; y++) {
+      const size_t pixel = first + (size_t)(y - window[1]) * film->width;
+      char *held = (char *)arrays[k].items + pixel * size;
+      if (way == VL_FROM_FILM)
+        memcpy(stored, held, bytes);
+      else
+        memcpy(held, stored, bytes);
+      stored += bytes;
+    }
+  }
+  return stored;
 }
 
 /* Adds a block of sums. The sums are integers, so the order does not matter. The reader has

@@ -64,30 +64,6 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
                  r->path);
 }
 
-/* Copies a block's data, as stored in the file, into the film. */
-static void copy_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
-  uint32_t width = h->x1 - h->x0, height = h->y1 - h->y0, n = film->def.buckets;
-  size_t pixels = (size_t)width * height;
-  const char *moments = data + pixels * sizeof(vlFilmPixel);
-  const char *sums = moments + (film->def.errors ? pixels * sizeof(vlFilmMoments) : 0);
-  const char *weights = sums + pixels * n * sizeof(vlInt128);
-  for (uint32_t y = 0; y < height; y++) {
-    size_t from = (size_t)y * width;
-    size_t to =
-        (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
-    memcpy(film->front + to, data + from * sizeof(vlFilmPixel), width * sizeof(vlFilmPixel));
-    if (film->def.errors)
-      memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments),
-             width * sizeof(vlFilmMoments));
-    if (!n)
-      continue;
-    memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128),
-           width * n * sizeof(vlInt128));
-    memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t),
-           width * n * sizeof(int64_t));
-  }
-}
-
 static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError *error) {
   size_t count = vl_film_pixels(film), n = film->def.buckets;
   film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
@@ -119,7 +95,8 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
       }
       film->compared[block] = r->head.compared;
     }
-    copy_block(film, &r->head, data);
+    const uint32_t window[4] = {r->head.x0, r->head.y0, r->head.x1, r->head.y1};
+    vl_film_copy_block(film, window, VL_TO_FILM, data);
     uint32_t end = r->ranges[r->head.range_count - 1].end;
     if (film->end < end)
       film->end = end;

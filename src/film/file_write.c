@@ -65,24 +65,6 @@ static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
          crop[3] <= window[3];
 }
 
-/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied
- * data. */
-static char *gather(const vlFilm *film, const uint32_t block_window[4], char *to) {
-  uint32_t width = block_window[2] - block_window[0], n = film->def.buckets;
-  size_t first = (size_t)(block_window[1] - film->def.crop[1]) * film->width +
-                 (block_window[0] - film->def.crop[0]);
-  size_t rows = block_window[3] - block_window[1], line = film->width;
-  for (size_t y = 0; y < rows; y++, to += width * sizeof(vlFilmPixel))
-    memcpy(to, film->front + first + y * line, width * sizeof(vlFilmPixel));
-  for (size_t y = 0; y < rows && film->def.errors; y++, to += width * sizeof(vlFilmMoments))
-    memcpy(to, film->moments[0] + first + y * line, width * sizeof(vlFilmMoments));
-  for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(vlInt128))
-    memcpy(to, film->spectrum.sums[0] + (first + y * line) * n, width * n * sizeof(vlInt128));
-  for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(int64_t))
-    memcpy(to, film->spectrum.weights[0] + (first + y * line) * n, width * n * sizeof(int64_t));
-  return to;
-}
-
 static void write_block(void *user, uint32_t block, uint32_t worker) {
   Run *run = user;
   if (atomic_load(&run->failed_errno))
@@ -97,7 +79,7 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   to += sizeof head;
   if (head.range_count) {
     memcpy(to, &range, sizeof range);
-    to = gather(run->film, block_window, to + sizeof range);
+    to = vl_film_copy_block(run->film, block_window, VL_FROM_FILM, to + sizeof range);
   }
   uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
   memcpy(to, &crc, sizeof crc);

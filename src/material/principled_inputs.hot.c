@@ -158,8 +158,7 @@ void vl_stage_coat_frames(const vlSurface *f, vlShade *shade, uint32_t first, ui
     vlVec3 c = vl_vec3(rows[VL_P_COAT_X][i], rows[VL_P_COAT_Y][i], rows[VL_P_COAT_Z][i]);
     if (!(rows[VL_P_COAT][i] > 0.0f))
       c = vl_row3(&f->n, i);
-    rows[VL_P_COAT_X][i] = vl_dot(c, vl_row3(&shade->tangent, i));
-    rows[VL_P_COAT_Y][i] = vl_dot(c, vl_row3(&shade->bitangent, i));
-    rows[VL_P_COAT_Z][i] = vl_dot(c, vl_row3(&f->n, i));
+    vlVec3 local = vl_to_local(vl_shading_frame(f, shade, i), c);
+    vl_set_lane3(rows[VL_P_COAT_X], rows[VL_P_COAT_Y], rows[VL_P_COAT_Z], i, local);
   }
 }

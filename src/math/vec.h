@@ -144,5 +144,8 @@ static inline vlFrame vl_frame_from_z(vlVec3 n) {
 static inline vlVec3 vl_from_local(vlFrame f, vlVec3 v) {
   return vl_add(vl_add(vl_mul(f.x, v.x), vl_mul(f.y, v.y)), vl_mul(f.z, v.z));
 }
+static inline vlVec3 vl_to_local(vlFrame f, vlVec3 v) {
+  return vl_vec3(vl_dot(v, f.x), vl_dot(v, f.y), vl_dot(v, f.z));
+}
 
 #endif

@@ -142,6 +142,12 @@ typedef struct vlShade {
   const vlMeasured *measured[VL_ROW_SIZE];
 } vlShade;
 
+/* gcc 12 does not vectorise loops that call it. */
+static inline vlFrame vl_shading_frame(const vlSurface *f, const vlShade *shade, uint32_t i) {
+  return (vlFrame){vl_row3(&shade->tangent, i), vl_row3(&shade->bitangent, i),
+                   vl_row3(&f->n, i)};
+}
+
 /* The paths of a bounce that have hit surfaces, sorted by material. */
 typedef struct vlVertices {
   vlPaths paths; /* the rays that have arrived */

@@ -2,12 +2,12 @@
  * of a pixel.
  *   1. Detection: maxima of -det of the Hessian of the smoothed image (saddle points).
  *   2. First refinement: the point orthogonal to all gradients around it (Foerstner and Guelch
- *      1987; OpenCV's
- * cornerSubPix). The gradient is orthogonal to an edge, and both edges pass through the corner.
+ *      1987; OpenCV's cornerSubPix). The gradient is orthogonal to an edge, and both edges pass
+ *      through the corner.
  *   3. Second refinement: lens distortion curves the edges, which biases step 2 by some
- *      hundredths of a pixel. The
- * model m + a erf(f1/s) erf(f2/s) of two curved, blurred edges is fitted to the pixels by least
- * squares. A window that the model does not fit is rejected. */
+ *      hundredths of a pixel. The model m + a erf(f1/s) erf(f2/s) of two curved, blurred edges
+ *      is fitted to the pixels by least squares. A window that the model does not fit is
+ *      rejected. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -19,10 +19,10 @@ enum { BLUR = 4, REACH = 9, UNKNOWNS = 9 };
 
 /* ---- finding ----------------------------------------------------------------------------- */
 
-static float at(const Image *p, int x, int y) {
+static double at(const Image *p, int x, int y) {
   x = x < 0 ? 0 : x >= p->width ? p->width - 1 : x;
   y = y < 0 ? 0 : y >= p->height ? p->height - 1 : y;
-  return p->pixels[(size_t)y * (size_t)p->width + (size_t)x];
+  return (double)p->pixels[(size_t)y * (size_t)p->width + (size_t)x];
 }
 
 static void smooth(const Image *from, bool vertical, float *to) {
@@ -33,26 +33,26 @@ static void smooth(const Image *from, bool vertical, float *to) {
     for (int x = 0; x < from->width; x++) {
       double value = 0.0;
       for (int i = -BLUR; i <= BLUR; i++)
-        value +=
-            kernel[i + BLUR] * (double)at(from, vertical ? x : x + i, vertical ? y + i : y);
+        value += kernel[i + BLUR] * (vertical ? at(from, x, y + i) : at(from, x + i, y));
       to[(size_t)y * (size_t)from->width + (size_t)x] = (float)(value / sum);
     }
 }
 
+/* -det of the Hessian of each pixel. */
 static void saddles(const Image *p, float *to) {
   for (int y = 0; y < p->height; y++)
     for (int x = 0; x < p->width; x++) {
-      double middle = (double)at(p, x, y);
-      double xx = (double)at(p, x - 1, y) + (double)at(p, x + 1, y) - 2.0 * middle;
-      double yy = (double)at(p, x, y - 1) + (double)at(p, x, y + 1) - 2.0 * middle;
-      double xy = 0.25 * ((double)at(p, x - 1, y - 1) + (double)at(p, x + 1, y + 1) -
-                          (double)at(p, x + 1, y - 1) - (double)at(p, x - 1, y + 1));
+      double middle = at(p, x, y);
+      double xx = at(p, x - 1, y) + at(p, x + 1, y) - 2.0 * middle;
+      double yy = at(p, x, y - 1) + at(p, x, y + 1) - 2.0 * middle;
+      double xy = 0.25 * (at(p, x - 1, y - 1) + at(p, x + 1, y + 1) - at(p, x + 1, y - 1) -
+                          at(p, x - 1, y + 1));
       to[(size_t)y * (size_t)p->width + (size_t)x] = (float)(xy * xy - xx * yy);
     }
 }
 
-static bool is_peak(const Image *p, int x, int y, float least) {
-  float here = at(p, x, y);
+static bool is_peak(const Image *p, int x, int y, double least) {
+  double here = at(p, x, y);
   if (here < least)
     return false;
   for (int j = -2; j <= 2; j++)
@@ -72,17 +72,17 @@ int corners_find(const Image *image, Corner *corners, int room) {
       low = fminf(low, image->pixels[i]);
       high = fmaxf(high, image->pixels[i]);
     }
-    float contrast = high - low;
+    double contrast = (double)high - (double)low;
     Image half = {image->width, image->height, a}, whole = {image->width, image->height, b};
     smooth(image, false, a);
     smooth(&half, true, b);
     saddles(&whole, a);
     /* two orthogonal edges give about 0.03 contrast^2, edges at 20 degrees a tenth of that */
-    float least = 0.002f * contrast * contrast;
-    for (int y = 3; y < image->height - 3 && contrast > 0.0f; y++)
+    double least = 0.002 * contrast * contrast;
+    for (int y = 3; y < image->height - 3 && contrast > 0.0; y++)
       for (int x = 3; x < image->width - 3 && count < room; x++)
         if (is_peak(&half, x, y, least))
-          corners[count++] = (Corner){x + 0.5, y + 0.5, (double)at(&half, x, y)};
+          corners[count++] = (Corner){x + 0.5, y + 0.5, at(&half, x, y)};
   }
   free(a);
   free(b);
@@ -104,12 +104,12 @@ static bool right_angles(const Image *p, double reach, Corner *corner) {
         if (d2 > reach * reach)
           continue;
         double weight = exp(-2.0 * d2 / (reach * reach));
-        double gx = 3.0 * (double)(at(p, x + 1, y - 1) - at(p, x - 1, y - 1) +
-                                   at(p, x + 1, y + 1) - at(p, x - 1, y + 1)) +
-                    10.0 * (double)(at(p, x + 1, y) - at(p, x - 1, y));
-        double gy = 3.0 * (double)(at(p, x - 1, y + 1) - at(p, x - 1, y - 1) +
-                                   at(p, x + 1, y + 1) - at(p, x + 1, y - 1)) +
-                    10.0 * (double)(at(p, x, y + 1) - at(p, x, y - 1));
+        double gx = 3.0 * (at(p, x + 1, y - 1) - at(p, x - 1, y - 1) + at(p, x + 1, y + 1) -
+                           at(p, x - 1, y + 1)) +
+                    10.0 * (at(p, x + 1, y) - at(p, x - 1, y));
+        double gy = 3.0 * (at(p, x - 1, y + 1) - at(p, x - 1, y - 1) + at(p, x + 1, y + 1) -
+                           at(p, x + 1, y - 1)) +
+                    10.0 * (at(p, x, y + 1) - at(p, x, y - 1));
         double xx = weight * gx * gx, xy = weight * gx * gy, yy = weight * gy * gy;
         a += xx;
         b += xy;
@@ -205,7 +205,7 @@ static void cut_window(const Image *p, double reach, const Corner *corner, Windo
       int i = w->count++;
       w->x[i] = px;
       w->y[i] = py;
-      w->value[i] = (double)at(p, x, y);
+      w->value[i] = at(p, x, y);
       w->weight[i] = exp(-0.5 * d2 / (reach * reach));
     }
 }

@@ -3,8 +3,7 @@
  *   - Vertices with the same position, normal and uv are one vertex.
  *   - Faces that share an edge and have the same uv orientation form a group at each vertex.
  *   - A group's tangent is the sum of its faces' directions of u, projected onto the plane of
- *     the normal and weighted
- * by the faces' angles at the vertex.
+ *     the normal and weighted by the faces' angles at the vertex.
  *
  * v points upwards, so that sign * (n x t) is the direction in which v grows: glTF's rule for
  * tangent.w. */

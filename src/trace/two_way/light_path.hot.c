@@ -7,17 +7,12 @@
 
 void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at,
                       const float wi[3][VL_ROW_SIZE], vlBsdfValues *back) {
-  const vlShade *sh = &at->shade;
-  const vlSurface *f = &at->surface;
+  const vlFloatRow *wo = at->shade.wo;
   /* wo in world space and back: as a light sample's direction is rounded */
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    float a = sh->wo[0][i], b = sh->wo[1][i], c = sh->wo[2][i];
-    float x = a * sh->tangent.x[i] + b * sh->bitangent.x[i] + c * f->n.x[i];
-    float y = a * sh->tangent.y[i] + b * sh->bitangent.y[i] + c * f->n.y[i];
-    float z = a * sh->tangent.z[i] + b * sh->bitangent.z[i] + c * f->n.z[i];
-    back->wi[0][i] = x * sh->tangent.x[i] + y * sh->tangent.y[i] + z * sh->tangent.z[i];
-    back->wi[1][i] = x * sh->bitangent.x[i] + y * sh->bitangent.y[i] + z * sh->bitangent.z[i];
-    back->wi[2][i] = x * f->n.x[i] + y * f->n.y[i] + z * f->n.z[i];
+    vlFrame frame = vl_shading_frame(&at->surface, &at->shade, i);
+    vlVec3 world = vl_from_local(frame, vl_lane3(wo[0], wo[1], wo[2], i));
+    vl_set_lane3(back->wi[0], back->wi[1], back->wi[2], i, vl_to_local(frame, world));
   }
   vl_stage_bsdf(t, n, at, wi, back);
 }

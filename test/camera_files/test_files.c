@@ -138,6 +138,26 @@ static void test_round_trips_at_the_origin(void **state) {
   there_and_back(&r, VL_CAMERA_DIALECT_KALIBR, "a.yaml", 1e-9);
 }
 
+/* ROS's calibration has OpenCV's fields, and each is read by the other's name. */
+static void test_related_dialects(void **state) {
+  (void)state;
+  static const vlCameraDialect related[2] = {VL_CAMERA_DIALECT_ROS, VL_CAMERA_DIALECT_OPENCV};
+  vlCameraRecord r = some_camera();
+  r.camera.has_matrix = true;
+  r.camera.roll = 0.0;
+  lens(&r.camera, VL_DISTORTION_OPENCV, 5, five);
+  for (int i = 0; i < 2; i++) {
+    vlError error;
+    vlCameraFileDef def = vl_default_camera_file_def();
+    def.dialect = related[i];
+    const char *path = path_of("related.yaml");
+    if (vl_camera_write(context, path, &def, &r, &error) != VL_OK)
+      fail_msg("%s", error.message);
+    const vlCameraRecord back = read_as(path, related[!i], NULL);
+    compare(&r.camera, &back.camera, 1e-9);
+  }
+}
+
 /* Every number of the def comes back in its own bits. */
 static void test_velo_is_exact(void **state) {
   (void)state;
@@ -521,6 +541,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trips),
       cmocka_unit_test(test_round_trips_at_the_origin),
+      cmocka_unit_test(test_related_dialects),
       cmocka_unit_test(test_velo_is_exact),
       cmocka_unit_test(test_half_pixel_table),
       cmocka_unit_test(test_blender_shift),

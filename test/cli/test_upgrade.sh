@@ -83,7 +83,7 @@ expect_code 3 checked "$VELO" scene check old/lost.pbrt
 expect_text checked_text 'velo scene upgrade'
 check listed "$VELO" scene upgrade old/lost.pbrt new/lost.pbrt
 expect_code 0 listed "$VELO" scene upgrade old/lost.pbrt new/lost.pbrt
-expect_text listed_change 'old/lost.pbrt:3: Film: "image" -> "rgb"'
+expect_text listed_change $'old/lost.pbrt:3: Film: "image" -> "rgb"\n'
 expect_text listed_loss 'old/lost.pbrt:12: lost: fourier has no counterpart'
 expect_text listed_sum ', 1 without counterpart'
 rm new/lost.pbrt

@@ -101,6 +101,9 @@ def test_camera(page):
     check("fov", near(new["fov_horizontal"], 40) and new["spelled"] == "fov", new["fov_horizontal"])
     new = edit(page, focal_mm=35, sensor_width_mm=36)["camera"]
     check("focal_mm", near(new["fx"], 35 / 36 * camera["width"]) and new["spelled"] == "focal", new["fx"])
+    new = edit(page, lens_radius=0.01)["camera"]
+    check("f_number_of_a_radius", near(new["f_number"], 35 / (2 * 1000 * 0.01)) and camera["width"] != camera["height"], new)
+    edit(page, lens_radius=0)
     new = edit(page, cx=camera["cx"] + 11.5)["camera"]
     check("cx", near(new["cx"], camera["cx"] + 11.5))
     new = edit(page, roll=30)["camera"]

@@ -163,6 +163,8 @@ refused "a part with -o" 2 "-o" $render scene.pbrt --samples 0:1 --film p.film -
 refused "a part without film" 2 "--film" $render scene.pbrt --shard 1/2
 refused "tiles beyond 32 bits" 2 "must lie in the film" $render scene.pbrt $small --film p.film --tiles 0,0,4294967328,32
 refused "no such shard" 2 "3/2" $render scene.pbrt --film p.film --shard 3/2
+refused "more shards than samples" 2 "more parts than samples per pixel (1)" $render scene.pbrt $small --film p.film --spp 1 --shard 1/2
+refused "more shards than tiles" 2 "more parts than tiles of 32 pixels (1)" $render scene.pbrt --film p.film --resolution 32x24 --shard 1/2 --shard-by tiles
 refused "no film" 4 "absent.film" $render --continue absent.film
 refused "not a film" 3 "not a film file" "$VELO" film info scene.pbrt
 refused "no folder" 5 "absent" $render scene.pbrt --film absent/p.film

@@ -148,7 +148,7 @@ static int choose_shard(Frames *frames, const Arguments *arguments) {
     return -1;
   shard_read(arguments, &index, &count);
   if (count > all)
-    return report_usage("--shard %u/%u: there are %u frames", index, count, all);
+    return report_usage("--shard %u/%u: more parts than frames (%u)", index, count, all);
   range->first += (index - 1) * range->step;
   range->step *= count; /* at most last + step, no overflow since count <= all */
   return -1;

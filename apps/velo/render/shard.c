@@ -93,8 +93,8 @@ static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint
     blocks[i] = (crop[i] + (i < 2 ? 0 : FILM_BLOCK - 1)) / FILM_BLOCK;
   uint64_t most = crop_pixels(blocks);
   if (count > most)
-    return report_usage("--shard %u/%u: the film has %llu tiles of %d pixels", index + 1, count,
-                        (unsigned long long)most, FILM_BLOCK);
+    return report_usage("--shard %u/%u: more parts than tiles of %d pixels (%llu)", index + 1,
+                        count, FILM_BLOCK, (unsigned long long)most);
   cut(blocks, index, count);
   shard_block_window(blocks, crop, tiles);
   return -1;
@@ -137,7 +137,7 @@ int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render
   if (v[RENDER_SHARD].given && !v[RENDER_TRAJECTORY].given) {
     shard_read(arguments, &index, &count);
     if (!by_tiles && count > render->spp)
-      return report_usage("--shard %u/%u: there are %u samples per pixel", index, count,
+      return report_usage("--shard %u/%u: more parts than samples per pixel (%u)", index, count,
                           render->spp);
     if (by_tiles) {
       status = tiles_of(film->crop, index - 1, count, film->crop);

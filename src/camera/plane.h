@@ -39,8 +39,7 @@ static inline double vl_root(double x) {
   return __builtin_sqrt(x > 0.0 ? x : 0.0);
 }
 
-/* ---- a projection's functions -------------------------------------------------------------
- */
+/* ---- a projection's functions ----------------------------------------------------------- */
 
 /* A projection need not use all of its arguments. These are those of vl_unproject_NAME: the
  * compiled camera (camera/rays.h), whose member `shape` holds the numbers of the projection;

@@ -136,8 +136,7 @@ size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most
 /* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
-/* ---- members of defs ----------------------------------------------------------------------
- */
+/* ---- members of defs -------------------------------------------------------------------- */
 
 /* How the value of a parameter is stored. Offsets are from the value's begin. */
 typedef struct vlMemberType {

@@ -38,6 +38,18 @@ static vlMediumDef white_medium(int kind) {
   return def;
 }
 
+/* Makes a medium a grid whose density is 1 within `side` of the origin along each axis. */
+static void make_even_grid(vlMediumDef *def, float side) {
+  static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+  def->kind = VL_MEDIUM_GRID;
+  def->nx = def->ny = def->nz = 2;
+  def->density = ones;
+  for (int i = 0; i < 3; i++) {
+    def->low[i] = -side;
+    def->high[i] = side;
+  }
+}
+
 /* ---- white furnaces ---------------------------------------------------------------------- */
 
 /* Grey ones vanish but for rounding; of coloured ones paths carry more of this and less of
@@ -93,7 +105,6 @@ static void furnace_in_glass(void **state) {
  * scattering without return. */
 static void beer(void **state) {
   (void)state;
-  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
   for (int kind = 0; kind < 3; kind++) {
     Stage s = stage_open(8, 8);
     s.camera.fov = 0.02;
@@ -103,16 +114,8 @@ static void beer(void **state) {
     s.render.max_depth = kind == 2 ? 0 : 5;
     vlMediumDef def = fog(0, 0, 0);
     def.sigma_a = vl_spectrum_rgb(0.1f, 0.5f, 1.0f);
-    if (kind == 1) { /* a grid that is 1 where the ray goes; twice as wide so that it stays so
-                        up to the slab's faces */
-      def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2;
-      def.density = ones;
-      for (int i = 0; i < 3; i++) {
-        def.low[i] = -20;
-        def.high[i] = 20;
-      }
-    }
+    if (kind == 1) /* far wider than the ball, so that it is 1 wherever the ray goes */
+      make_even_grid(&def, 20);
     if (kind == 2)
       def.sigma_s = vl_spectrum_constant(0.25f);
     vlMediumId id = add_medium(&s, &def);
@@ -146,22 +149,14 @@ static void single_scattering(void **state) {
     expected += 60.0 / n * sc * phase(g, cosine) * exp(-(a + sc) * (t + d)) / (d * d);
   }
   for (int kind = 0; kind < 2; kind++) {
-    const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
     Stage s = stage_open(8, 8);
     s.camera.fov = 0.002;
     s.render.tracer = VL_TRACER_VOLPATH;
     s.render.spp = 8192;
     s.render.max_depth = 1;
     vlMediumDef def = fog((float)a, (float)sc, (float)g);
-    if (kind == 1) {
-      def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2;
-      def.density = ones;
-      for (int i = 0; i < 3; i++) {
-        def.low[i] = -200;
-        def.high[i] = 200;
-      }
-    }
+    if (kind == 1)
+      make_even_grid(&def, 200);
     add_point(&s, (float)lamp[0], (float)lamp[1], (float)lamp[2], 1);
     vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &def);
     Image p = stage_finish(&s);
@@ -174,7 +169,6 @@ static void single_scattering(void **state) {
 
 static void emissive(void **state) {
   (void)state;
-  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
   for (int kind = 0; kind < 4; kind++) {
     Stage s = stage_open(8, 8);
     s.camera.fov = 0.02;
@@ -183,15 +177,8 @@ static void emissive(void **state) {
     s.render.spp = 1024;
     vlMediumDef def = fog(0.7f, 0, 0);
     def.emission = vl_spectrum_rgb(3, 3, 3);
-    if (kind > 1) {
-      def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2;
-      def.density = ones;
-      for (int i = 0; i < 3; i++) {
-        def.low[i] = -20;
-        def.high[i] = 20;
-      }
-    }
+    if (kind > 1)
+      make_even_grid(&def, 20);
     add_ball(&s, -3, 1.0f, interface(&s), add_medium(&s, &def), (vlMediumId){0});
     Image p = stage_finish(&s);
     for (int c = 0; c < 3; c++)
@@ -203,7 +190,7 @@ static void emissive(void **state) {
 /* A grid of one temperature against the black body of it as emission: raw, its maximum 1. */
 static void hot(void **state) {
   (void)state;
-  const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1}, kelvin[8] = {30, 30, 30, 30, 30, 30, 30, 30};
+  const float kelvin[8] = {30, 30, 30, 30, 30, 30, 30, 30};
   double mean[2][2][3];
   for (int rgb = 0; rgb < 2; rgb++)
     for (int way = 0; way < 2; way++) {
@@ -213,13 +200,7 @@ static void hot(void **state) {
       s.render.tracer = VL_TRACER_VOLPATH;
       s.render.spp = 1024;
       vlMediumDef def = fog(0.7f, 0, 0);
-      def.kind = VL_MEDIUM_GRID;
-      def.nx = def.ny = def.nz = 2;
-      def.density = ones;
-      for (int i = 0; i < 3; i++) {
-        def.low[i] = -20;
-        def.high[i] = 20;
-      }
+      make_even_grid(&def, 20);
       if (way == 0)
         def.emission = vl_spectrum_blackbody(2500);
       if (way == 1) {

@@ -360,8 +360,7 @@ static void mixtures_keep_what_is_told(void **state) {
   }
 }
 
-/* ---- light between the microfacets of a metal -----------------------------------------------
- */
+/* ---- light between the microfacets of a metal ------------------------------------------- */
 
 /* Smith's length of the slopes that hide a direction, for a roughness of 1. */
 static double slopes(double cosine) {

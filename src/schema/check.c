@@ -167,9 +167,9 @@ static void put_near(const char *name, const char *const *names, size_t count,
     snprintf(text, size, "; did you mean \"%s%s\"?", prefix, near);
 }
 
-/* Writes `NAME must be RULE; it is VALUE`. */
+/* Writes `NAME must be RULE; it is VALUE`, or as much of it as has room. */
 static void put_wrong(const vlParameter *row, const char *name, const vlGiven *given,
-                      char message[VL_GIVEN_MESSAGE]) {
+                      char *message, size_t size) {
   char rule[256];
   char value[270];
   char near[80] = "";
@@ -180,7 +180,7 @@ static void put_wrong(const vlParameter *row, const char *name, const vlGiven *g
   put_value(row, given, value, sizeof value);
   if (row->type == VL_PARAMETER_CHOICE && given->kind == VL_GIVEN_TEXT)
     put_near(given->text, row->choices, vl_choice_count(row), "", near, sizeof near);
-  snprintf(message, VL_GIVEN_MESSAGE, "%s must be %s; it is %s%s", name, rule,
+  snprintf(message, size, "%s must be %s; it is %s%s", name, rule,
            given->shown ? given->shown : value, near);
 }
 
@@ -189,7 +189,7 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
   double unused;
   if (fits(row, given, given->factor != 0 ? given->factor : 1, number ? number : &unused))
     return true;
-  put_wrong(row, name, given, message);
+  put_wrong(row, name, given, message, VL_GIVEN_MESSAGE);
   return false;
 }
 
@@ -225,7 +225,7 @@ void vl_parameter_complain(const vlParameter *p, const char *name, double wrong,
   if (vl_member_types[p->type].text)
     snprintf(message, VL_GIVEN_MESSAGE, "%s is missing", name);
   else
-    put_wrong(p, name, &given, message);
+    put_wrong(p, name, &given, message, VL_GIVEN_MESSAGE);
 }
 
 bool vl_parameter_check(const vlParameter *p, const void *def, const char *name,

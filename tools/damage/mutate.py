@@ -244,6 +244,8 @@ def json_tree(draw, tree):
 
 def json_text(draw, text):
     """The text of a JSON file: its structure mostly, its letters sometimes."""
+    if not text:  # an earlier damage has cut it off
+        return text
     if draw.random() < 0.8:
         try:
             return json.dumps(json_tree(draw, json.loads(text)), separators=(",", ":")).encode()

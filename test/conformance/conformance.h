@@ -291,21 +291,27 @@ static void probe_world(const char *text, Probe *probe, uint32_t batches) {
   probe_scene(need_scene(text), text, probe, batches);
 }
 
-/* Adds the square from -1 to 1 with this material, or, if it is null, with none; its texture
- * coordinates are 0 to 1, of `mirrored` squares u is 1 to 0. Its second set of coordinates is
- * the other one of these. */
-static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mirrored) {
+/* The square from -1 to 1 in the plane z = 0, of two triangles. */
+static vlShapeDef square_def(void) {
   static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-  static const float upright[8] = {0, 0, 1, 0, 1, 1, 0, 1};
-  static const float turned[8] = {1, 0, 0, 0, 0, 1, 1, 1};
   static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   square.vertices = 4;
   square.faces = 2;
   square.positions = corners;
+  square.indices = indices;
+  return square;
+}
+
+/* Adds the square from -1 to 1 with this material, or, if it is null, with none; its texture
+ * coordinates are 0 to 1, of `mirrored` squares u is 1 to 0. Its second set of coordinates is
+ * the other one of these. */
+static void add_square_of(vlScene *scene, const vlMaterialDef *material, bool mirrored) {
+  static const float upright[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+  static const float turned[8] = {1, 0, 0, 0, 0, 1, 1, 1};
+  vlShapeDef square = square_def();
   square.uvs = mirrored ? turned : upright;
   square.more_uvs[0] = mirrored ? upright : turned;
-  square.indices = indices;
   if (material)
     square.material = vl_scene_add_material(scene, material);
   vl_scene_add_shape(scene, &square);

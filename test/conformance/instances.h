@@ -83,10 +83,8 @@ static void check_placings(const vlKindRow *row, const char *parameters) {
 /* What a metal with a normal map and brushed along given tangents sends under a map, where it
  * is in a still (1) or in a moving object (2), or in none (0). */
 static Scattering *brushed(const double map[16], int placing, float sign) {
-  static const float corners[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   static const float normals[12] = {0.3f, 0, 1, 0, 0.2f, 1, -0.1f, 0, 1, 0, 0.4f, 1};
   static const float tangents[12] = {1, 0.3f, 0, 1, 0.2f, 0, 0.8f, 0.4f, 0, 1, 0, 0};
-  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   const float signs[4] = {sign, sign, sign, sign};
   vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
   vlImage *image;
@@ -96,14 +94,10 @@ static Scattering *brushed(const double map[16], int placing, float sign) {
   metal.principled.anisotropy.value = 0.7f;
   metal.principled.anisotropy_rotation.value = 0.5f;
   metal.principled.normal = add_map(scene, &image, 1);
-  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  square.vertices = 4;
-  square.faces = 2;
-  square.positions = corners;
+  vlShapeDef square = square_def();
   square.normals = normals;
   square.tangents = tangents;
   square.tangent_signs = signs;
-  square.indices = indices;
   square.material = vl_scene_add_material(scene, &metal);
   if (placing)
     square.group = vl_scene_add_group(scene, "o");

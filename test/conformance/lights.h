@@ -260,21 +260,17 @@ static void emit_by_second_set(vlScene *scene, vlEmissionDef *def) {
   static const float corners[12] = {-1, .2f, 0, 1, .2f, 0, 1, 2, 0, -1, 2, 0};
   static const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
   static const float turned[8] = {1, 0, 1, 1, 0, 1, 0, 0};
-  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   char path[80];
   vlTextureDef image = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  vlShapeDef square = square_def();
   snprintf(path, sizeof path, "%s/quarters.pfm", folder);
   image.path = path;
   image.uv_set = 1;
   def->texture = vl_scene_add_texture(scene, &image);
   def->two_sided = true;
-  square.vertices = 4;
-  square.faces = 2;
   square.positions = corners;
   square.uvs = uvs;
   square.more_uvs[0] = turned;
-  square.indices = indices;
   square.emission = (vlEmissionId){1};
   vl_scene_add_shape(scene, &square);
 }

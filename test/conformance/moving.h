@@ -56,18 +56,12 @@ static void ask_moving(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
 
 static void moving_meshes(void **state) {
   (void)state;
-  static const float below[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   static const float above[12] = {-1, -1, .5f, 1, -1, .5f, 1, 1, .5f, -1, 1, .5f};
-  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   static const char *const text = HEAD "WorldBegin LightSource \"infinite\"";
-  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  square.vertices = 4;
-  square.faces = 2;
-  square.positions = below;
+  vlShapeDef square = square_def();
   square.positions_close = above;
   square.normals = still_normals;
   square.normals_close = turned_normals;
-  square.indices = indices;
   Moving m = {.rays = new_rays(), .hits = calloc(1, sizeof *m.hits)};
   Probe probe = {.ask = ask_moving, .user = &m};
   vlScene *scene = need_scene(text);

@@ -295,18 +295,14 @@ static double covered_at(const vlTextureDef *texture, float x, float y) {
   static const float turned[8] = {0, 0, 0, 1, 1, 1, 1, 0};
   static const float colors[16] = {.1f, .1f, .1f, 1, .5f, .5f, .5f, 1,
                                    .9f, .9f, .9f, 1, .5f, .5f, .5f, 1};
-  static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
   vlError error = {0};
   vlWorld *world;
   vlScene *scene = need_scene(HEAD "WorldBegin LightSource \"infinite\"");
-  vlShapeDef square = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  square.vertices = 4;
-  square.faces = 2;
+  vlShapeDef square = square_def();
   square.positions = corners;
   square.uvs = uvs;
   square.more_uvs[0] = turned;
   square.colors = colors;
-  square.indices = indices;
   square.alpha.texture = vl_scene_add_texture(scene, texture);
   vl_scene_add_shape(scene, &square);
   assert_int_equal(vl_world_build(scene, NULL, &world, &error), VL_OK);

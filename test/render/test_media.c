@@ -38,18 +38,6 @@ static vlMediumDef white_medium(int kind) {
   return def;
 }
 
-/* Makes a medium a grid whose density is 1 within `side` of the origin along each axis. */
-static void make_even_grid(vlMediumDef *def, float side) {
-  static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
-  def->kind = VL_MEDIUM_GRID;
-  def->nx = def->ny = def->nz = 2;
-  def->density = ones;
-  for (int i = 0; i < 3; i++) {
-    def->low[i] = -side;
-    def->high[i] = side;
-  }
-}
-
 /* ---- white furnaces ---------------------------------------------------------------------- */
 
 /* Grey ones vanish but for rounding; of coloured ones paths carry more of this and less of

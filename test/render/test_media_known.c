@@ -10,19 +10,6 @@
 #include "velo/tracer.h"
 #include "world/nanovdb_file.h"
 
-static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
-
-/* Density 1 all over and around what is looked at. */
-static void uniform(vlMediumDef *def, float half) {
-  def->kind = VL_MEDIUM_GRID;
-  def->nx = def->ny = def->nz = 2;
-  def->density = ones;
-  for (int i = 0; i < 3; i++) {
-    def->low[i] = -half;
-    def->high[i] = half;
-  }
-}
-
 static Stage narrow(uint32_t spp, vlColorMode color) {
   Stage s = stage_open(8, 8);
   s.camera.fov = 0.02;
@@ -112,7 +99,7 @@ static void nested(void **state) {
     for (int k = 0; k < 3; k++) {
       vlMediumDef def = fog((float)sigma[k], 0, 0);
       if (turn && (k + turn) % 3)
-        uniform(&def, 50);
+        make_even_grid(&def, 50);
       id[k] = add_medium(&s, &def);
     }
     vl_scene_defs(s.scene)->camera_medium = id[0];
@@ -296,7 +283,7 @@ static void emissive_fog(void **state) {
     vlMediumDef def = fog(0.3f, 0.2f, 0);
     def.emission = vl_spectrum_rgb(1, 1, 1);
     if (kind)
-      uniform(&def, 20);
+      make_even_grid(&def, 20);
     add_ball(&s, -3, 1, interface(&s), add_medium(&s, &def), (vlMediumId){0});
     Image p = stage_finish(&s);
     /* At the last permitted bounce a medium dims and gives no light: so what is seen is the

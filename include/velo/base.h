@@ -130,8 +130,9 @@ typedef struct vlShortText {
 VL_API vlShortText vl_short_text(const char *text);
 
 /** Receives a log message. `where` is null or carries file, line and column (its message is not
- * used). Called from any thread, never from two at once. The strings live until the callback
- * returns. */
+ * used); its code is MISSING if the message is about a missing file that is done without.
+ * Called from any thread, never from two at once. The strings live until the callback returns.
+ */
 typedef void vlLogFn(void *user, vlLogLevel level, const vlError *where, const char *message);
 
 /** The source of all memory of the library. Both functions are called from any thread, also

@@ -59,14 +59,21 @@ static void report_message(void *user, const vlError *e) {
   add(user, kind, severity, e->code, e->file, e->line, e->column, e->message);
 }
 
-/* The importer's warnings become findings; its notes do not. An error in its log does not end a
- * render: what is wrong is not used. */
+/* The importer's warnings become findings; its notes do not. Neither a missing file nor an
+ * error in its log ends a render: what is missing or wrong is not used. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
-  const bool wrong = level == VL_LOG_ERROR;
-  if (level <= VL_LOG_WARNING)
-    add(user, wrong ? VL_FINDING_WRONG : VL_FINDING_REMARK,
-        wrong ? VL_SEVERITY_WARNING : VL_SEVERITY_NOTE, VL_OK, where ? where->file : "",
-        where ? where->line : 0, where ? where->column : 0, message);
+  static const vlError nowhere;
+  if (level > VL_LOG_WARNING)
+    return;
+  if (!where)
+    where = &nowhere;
+  vlFindingKind kind = VL_FINDING_REMARK;
+  if (where->code == VL_ERROR_MISSING)
+    kind = VL_FINDING_MISSING_FILE;
+  else if (level == VL_LOG_ERROR)
+    kind = VL_FINDING_WRONG;
+  add(user, kind, kind == VL_FINDING_REMARK ? VL_SEVERITY_NOTE : VL_SEVERITY_WARNING, VL_OK,
+      where->file, where->line, where->column, message);
 }
 
 /* Lists the findings of reading the scene and of checking it. Returns -1, or the exit code

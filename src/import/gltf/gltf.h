@@ -184,6 +184,9 @@ vlGltf *vl_gltf_of(const vlGltfLocation *location);
 size_t vl_gltf_write_location(const vlGltfLocation *location, char *text, size_t size);
 void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...)
     VL_PRINTF(3, 4);
+/* Warns of a missing file that is done without. */
+void vl_gltf_warn_missing(const vlGltfLocation *location, const char *format, ...)
+    VL_PRINTF(2, 3);
 /* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 

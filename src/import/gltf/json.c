@@ -66,14 +66,26 @@ bool vl_gltf_fail_key(const vlGltfLocation *at, const char *key, const char *for
   return vl_gltf_fail(VL_GLTF_KEY(at, key), "%s", text);
 }
 
-void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...) {
+static void warn(vlLogLevel level, vlResult code, const vlGltfLocation *location,
+                 const char *text) {
   const vlGltf *g = vl_gltf_of(location);
-  char text[MESSAGE], message[MESSAGE];
-  VL_FORMAT(text, format);
+  char message[MESSAGE];
   write_message(location, text, message);
   vlError where;
-  vl_fail_at(&where, VL_ERROR_SCENE, g->path, 0, 0, " ");
+  vl_fail_at(&where, code, g->path, 0, 0, " ");
   vl_log(g->context, level, &where, "%s", message);
+}
+
+void vl_gltf_warn(vlLogLevel level, const vlGltfLocation *location, const char *format, ...) {
+  char text[MESSAGE];
+  VL_FORMAT(text, format);
+  warn(level, VL_ERROR_SCENE, location, text);
+}
+
+void vl_gltf_warn_missing(const vlGltfLocation *location, const char *format, ...) {
+  char text[MESSAGE];
+  VL_FORMAT(text, format);
+  warn(VL_LOG_WARNING, VL_ERROR_MISSING, location, text);
 }
 
 bool vl_gltf_once(vlGltf *g, uint32_t bit) {

@@ -2,8 +2,8 @@
  * set, KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or
  * paths. */
 #include <stdio.h>
-#include <unistd.h>
 
+#include "base/file.h"
 #include "base/text.h"
 #include "image/image.h"
 #include "import/gltf/gltf.h"
@@ -28,13 +28,13 @@ static bool is_remote(const char *uri) {
 
 /* Reports a missing image: as an error if strict. */
 static bool report_missing(vlGltf *g, const vlGltfLocation *at, vlGltfImage *image,
-                           const char *name, const char *why) {
+                           const char *message) {
   char text[512];
-  snprintf(text, sizeof text, "%.400s", name);
+  snprintf(text, sizeof text, "%.480s", message);
   vl_make_printable(text);
-  if (g->def->strict || g->scene->problem)
-    return vl_gltf_fail_code(VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text, why);
-  vl_gltf_warn(VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text, why);
+  if (g->def->strict)
+    return vl_gltf_fail_code(VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "%s", text);
+  vl_gltf_warn_missing(VL_GLTF_KEY(at, "uri"), "%s; done without", text);
   g->repairs.images++;
   return image->read = image->missing = true;
 }
@@ -72,14 +72,16 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   if (!vl_gltf_text(at, "uri", &uri) || !vl_gltf_index(at, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
-    if (is_remote(uri))
-      return report_missing(g, at, image, uri, "velo fetches nothing from the net");
+    vlError missing;
+    if (is_remote(uri)) {
+      vl_fail(&missing, VL_ERROR_MISSING, "velo fetches nothing from the net: %.400s", uri);
+      return report_missing(g, at, image, missing.message);
+    }
     if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path))
       return false;
     if (image->path && vl_context_allows(g->context, image->path) &&
-        access(image->path, F_OK) != 0 &&
-        !g->scene->problem) /* vl_scene_check reports it itself */
-      return report_missing(g, at, image, image->path, "no such file");
+        vl_file_check(g->context, image->path, &missing) == VL_ERROR_MISSING)
+      return report_missing(g, at, image, missing.message);
   } else if (view != VL_GLTF_NONE) {
     if (!g->views[view].data)
       return vl_gltf_fail(at, "its bufferView holds nothing that velo can read");

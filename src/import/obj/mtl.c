@@ -49,7 +49,7 @@ static bool find_file(vlObj *obj, const char *name, char *path, size_t size) {
 /* Reports a missing file: as an error if strict. */
 static bool report_missing(vlObj *obj, const char *what, const char *name) {
   if (!obj->strict) {
-    vl_obj_warn(obj, VL_LOG_WARNING, "%s \"%.200s\"; done without", what, name);
+    vl_obj_warn_missing(obj, "%s \"%.200s\"; done without", what, name);
     return true;
   }
   return vl_scene_fail(obj->scene, VL_ERROR_MISSING, (vlSource){obj->path, obj->line, 1},

@@ -27,12 +27,22 @@ bool vl_obj_fail(vlObj *obj, const char *format, ...) {
                        "%s", text);
 }
 
+static void warn(vlObj *obj, vlLogLevel level, vlResult code, const char *text) {
+  vlError where;
+  vl_fail_at(&where, code, obj->path, obj->line, obj->line ? 1 : 0, " ");
+  vl_log(obj->context, level, &where, "%s", text);
+}
+
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) {
   char text[500];
   VL_FORMAT(text, format);
-  vlError where = {.line = obj->line, .column = obj->line ? 1 : 0};
-  snprintf(where.file, sizeof where.file, "%s", obj->path);
-  vl_log(obj->context, level, &where, "%s", text);
+  warn(obj, level, VL_ERROR_SCENE, text);
+}
+
+void vl_obj_warn_missing(vlObj *obj, const char *format, ...) {
+  char text[500];
+  VL_FORMAT(text, format);
+  warn(obj, VL_LOG_WARNING, VL_ERROR_MISSING, text);
 }
 
 bool vl_obj_fail_memory(vlObj *obj) {

@@ -128,6 +128,8 @@ bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,
 /* Report an error or a warning at the current statement. vl_obj_fail always returns false. */
 bool vl_obj_fail(vlObj *obj, const char *format, ...) VL_PRINTF(2, 3);
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) VL_PRINTF(3, 4);
+/* Warns of a missing file that is done without. */
+void vl_obj_warn_missing(vlObj *obj, const char *format, ...) VL_PRINTF(2, 3);
 bool vl_obj_fail_memory(vlObj *obj);
 /* Reads the next statement of [*from, end) with its continued lines and sets line, at and end.
  * Returns false at the end of the text. */

@@ -98,7 +98,9 @@ typedef struct vlAttribute {
   double numbers[16];   /**< value of a numeric attribute */
   const char *string;   /**< value of STRING and STRINGS */
 } vlAttribute;
-/** Sets an attribute, replacing one of the same name. Copied. ARGUMENT, MEMORY. */
+/** Sets an attribute, replacing one of the same name. Copied. ARGUMENT (also what no header of
+ * OpenEXR can hold: integers beyond 32 bits, a window whose end is before its beginning),
+ * MEMORY. */
 VL_API vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute);
 /** Sets the attributes that another image has. Errors: ARGUMENT, MEMORY. */
 VL_API vlResult vl_image_add_attributes(vlImage *image, const vlImage *from);

@@ -131,7 +131,7 @@ static bool good_ranges(const vlSampleSpan *ranges, uint32_t count) {
   for (uint32_t i = 0; i < count; i++)
     if (ranges[i].first >= ranges[i].end || (i && ranges[i].first <= ranges[i - 1].end))
       return false;
-  return vl_film_samples(ranges, count) <= UINT64_C(1) << 31;
+  return vl_film_samples(ranges, count) < UINT64_C(1) << 31;
 }
 
 vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {

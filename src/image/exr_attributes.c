@@ -247,36 +247,13 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
   return EXR_ERR_INVALID_ARGUMENT;
 }
 
-static bool fits_int(const double *n, int count) {
-  for (int i = 0; i < count; i++)
-    if (!(n[i] >= INT32_MIN && n[i] <= INT32_MAX))
-      return false;
-  return true;
-}
-
 vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError *error) {
-  static const struct {
-    const char *name;
-    vlAttributeType type;
-  } fixed[] = {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT},
-               {"screenWindowWidth", VL_ATTRIBUTE_FLOAT},
-               {"screenWindowCenter", VL_ATTRIBUTE_V2F},
-               {"displayWindow", VL_ATTRIBUTE_BOX2I},
-               {"dataWindow", VL_ATTRIBUTE_BOX2I}};
   VL_EACH_ITEM(const vlImageAttribute, a, &image->attributes) {
     if (is_layout(a->name))
       continue;
-    bool ok = true;
-    for (size_t k = 0; k < VL_LENGTH(fixed); k++)
-      if (vl_text_is(a->name, fixed[k].name) && a->type != fixed[k].type)
-        ok = false;
-    if (a->type == VL_ATTRIBUTE_BOX2I)
-      ok = ok && fits_int(a->numbers, 4);
-    if (a->type == VL_ATTRIBUTE_INT)
-      ok = ok && fits_int(a->numbers, 1);
-    if (ok && vl_text_is(a->name, "dataWindow"))
-      ok = a->numbers[2] - a->numbers[0] + 1.0 == image->width &&
-           a->numbers[3] - a->numbers[1] + 1.0 == image->height;
+    bool ok = !vl_text_is(a->name, "dataWindow") ||
+              (a->numbers[2] - a->numbers[0] + 1.0 == image->width &&
+               a->numbers[3] - a->numbers[1] + 1.0 == image->height);
     exr_result_t code = ok ? set_attribute(exr, a) : EXR_ERR_INVALID_ATTR;
     if (code == EXR_ERR_OUT_OF_MEMORY)
       return vl_fail_memory(error);
@@ -284,7 +261,7 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
       return vl_fail(
           error, VL_ERROR_ARGUMENT, "cannot write the attribute \"%s\": %s",
           vl_short_text(a->name).text,
-          ok ? exr_get_default_error_message(code) : "its type or values do not suit its name");
+          ok ? exr_get_default_error_message(code) : "it is not of the image's size");
   }
   return VL_OK;
 }

@@ -1,6 +1,7 @@
 /* image/image.c: creation of images, their attributes, and access to their values. */
 #include "image/image.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,8 @@
 #include "color/color.h"
 #include "image/pixel.h"
 
-enum { NAME_MAX_LENGTH = 255 }; /* OpenEXR's limit for long names */
+/* Limits of OpenEXR: the length of long names, and the corners of windows, pixels. */
+enum { NAME_MAX_LENGTH = 255, MAX_WINDOW = INT32_MAX / 2 - 1 };
 
 size_t vl_pixel_size(vlPixelType type) {
   return type == VL_PIXEL_U8 ? 1 : type == VL_PIXEL_U16 || type == VL_PIXEL_F16 ? 2 : 4;
@@ -336,10 +338,42 @@ static vlImageAttribute *find_attribute(const vlImage *image, const char *name) 
   return NULL;
 }
 
+static bool are_within(const double *numbers, int count, double low, double high) {
+  for (int i = 0; i < count; i++)
+    if (!(numbers[i] >= low && numbers[i] <= high))
+      return false;
+  return true;
+}
+
+/* Whether a header of OpenEXR can hold the attribute: integers of 32 bits, and the types and
+ * ranges of the attributes that each header has. */
+static bool suits_header(const vlAttribute *a) {
+  static const struct {
+    const char *name;
+    vlAttributeType type;
+    int count; /* of the numbers that have a range */
+    double low, high;
+  } required[] = {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, 1, 1e-6, 1e6},
+                  {"screenWindowWidth", VL_ATTRIBUTE_FLOAT, 1, 0, FLT_MAX},
+                  {"screenWindowCenter", VL_ATTRIBUTE_V2F, 0, 0, 0},
+                  {"displayWindow", VL_ATTRIBUTE_BOX2I, 4, -MAX_WINDOW, MAX_WINDOW},
+                  {"dataWindow", VL_ATTRIBUTE_BOX2I, 4, -MAX_WINDOW, MAX_WINDOW}};
+  for (size_t i = 0; i < VL_LENGTH(required); i++) {
+    if (!vl_text_is(a->name, required[i].name))
+      continue;
+    const bool is_window = required[i].type == VL_ATTRIBUTE_BOX2I;
+    return a->type == required[i].type &&
+           are_within(a->numbers, required[i].count, required[i].low, required[i].high) &&
+           !(is_window && (a->numbers[0] > a->numbers[2] || a->numbers[1] > a->numbers[3]));
+  }
+  const int integers = a->type == VL_ATTRIBUTE_INT ? 1 : a->type == VL_ATTRIBUTE_BOX2I ? 4 : 0;
+  return are_within(a->numbers, integers, INT32_MIN, INT32_MAX);
+}
+
 vlResult vl_image_set_attribute(vlImage *image, const vlAttribute *attribute) {
   if (!image || !attribute || !name_ok(attribute->name))
     return VL_ERROR_ARGUMENT;
-  if ((unsigned)attribute->type > VL_ATTRIBUTE_STRINGS)
+  if ((unsigned)attribute->type > VL_ATTRIBUTE_STRINGS || !suits_header(attribute))
     return VL_ERROR_ARGUMENT;
   bool text = attribute->type == VL_ATTRIBUTE_STRING || attribute->type == VL_ATTRIBUTE_STRINGS;
   if (text && !attribute->string)

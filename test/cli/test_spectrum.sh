@@ -31,7 +31,9 @@ check with_channels_info "$VELO" image info both.exr
 expect_text both '10: '
 expect_text both_spectrum ' S0.430,000nm'
 expect_code 2 no_rgb "$VELO" render spectral.pbrt -o no.exr --color rgb
-expect_text no_rgb_says 'color rgb: there is no spectrum then'
+expect_text no_rgb_says 'color rgb: the film of spectral.pbrt is in wavelengths; --spectrum 0 leaves them out'
+expect_code 2 no_rgb_given "$VELO" render plain.pbrt -o no.exr --color rgb --spectrum 5
+expect_text no_rgb_given_says 'color rgb: there is no spectrum then'
 expect_code 2 bad_number "$VELO" render plain.pbrt -o no.exr --spectrum 5:300:700
 expect_code 2 bad_words "$VELO" render plain.pbrt -o no.exr --spectrum many
 check nothing_written test ! -e no.exr

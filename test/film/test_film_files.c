@@ -459,7 +459,7 @@ static void no_damage_goes_unseen(void **state) {
 }
 
 /* Sums that no samples can produce are refused even if their CRC is right, since later
- * additions could overflow. */
+ * additions could overflow; so are more samples than an image's header can hold. */
 static void impossible_sums_are_refused(void **state) {
   (void)state;
   size_t size;
@@ -472,6 +472,16 @@ static void impossible_sums_are_refused(void **state) {
   vlFilmBlockHead head;
   memcpy(&head, block, sizeof head);
   size_t length = sizeof head + sizeof(vlSampleSpan) + head.data_size;
+  for (uint32_t more = 0; more < 2; more++) {
+    const vlSampleSpan range = {0, INT32_MAX + more};
+    memcpy(block + sizeof head, &range, sizeof range);
+    uint32_t crc = vl_film_crc(0, block, length);
+    memcpy(block + length, &crc, sizeof crc);
+    assert_int_equal(read_bytes(bytes, size, &error), more ? VL_ERROR_SCENE : VL_OK);
+  }
+  assert_non_null(strstr(error.message, "a block's samples"));
+  const vlSampleSpan range = {0, 2};
+  memcpy(block + sizeof head, &range, sizeof range);
   block[sizeof head + sizeof(vlSampleSpan) + 15] = 0x7f; /* the highest byte of a sum */
   uint32_t crc = vl_film_crc(0, block, length);
   memcpy(block + length, &crc, sizeof crc);
@@ -677,7 +687,10 @@ static void attributes_are_kept(void **state) {
                                       "{\"a\": [\"int\", \"1\"]}",
                                       "{\"a\": [\"string\", 1]}",
                                       "{\"a\": [\"thing\", 1]}",
-                                      "{\"\": [\"int\", 1]}"};
+                                      "{\"\": [\"int\", 1]}",
+                                      "{\"a\": [\"int\", 2147483648]}",
+                                      "{\"displayWindow\": [\"box2i\", 0, 0, -1, 3]}",
+                                      "{\"displayWindow\": [\"v2f\", 0, 0]}"};
   assert_int_equal(vl_image_create(context, &image_def, &to), VL_OK);
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     assert_int_equal(vl_film_attributes_set("x.film", texts[i], to, &error), VL_ERROR_SCENE);

@@ -135,6 +135,57 @@ static void test_attributes(void **state) {
   end_context(context);
 }
 
+/* What an image takes can be written: the writer of OpenEXR refuses no attribute. */
+static void test_attributes_suit(void **state) {
+  (void)state;
+  failAllocator failing;
+  vlContext *context = make_context(&failing);
+  const double large = INT32_MAX / 2, most = large - 1;
+  const struct {
+    vlAttribute attribute;
+    bool suits;
+  } rows[] = {
+      {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, {1e-6}, NULL}, true},
+      {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, {1e6}, NULL}, true},
+      {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, {0}, NULL}, false},
+      {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, {2e6}, NULL}, false},
+      {{"pixelAspectRatio", VL_ATTRIBUTE_FLOAT, {NAN}, NULL}, false},
+      {{"pixelAspectRatio", VL_ATTRIBUTE_DOUBLE, {1}, NULL}, false},
+      {{"screenWindowWidth", VL_ATTRIBUTE_FLOAT, {0}, NULL}, true},
+      {{"screenWindowWidth", VL_ATTRIBUTE_FLOAT, {-1}, NULL}, false},
+      {{"screenWindowCenter", VL_ATTRIBUTE_V2F, {-3, 4}, NULL}, true},
+      {{"screenWindowCenter", VL_ATTRIBUTE_V3F, {-3, 4}, NULL}, false},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {5, 6, 5, 6}, NULL}, true},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {-most, -most, most, most}, NULL}, true},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {0, 0, large, 1}, NULL}, false},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {0, -large, 1, 1}, NULL}, false},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {1, 0, 0, 1}, NULL}, false},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {0, 1, 1, 0}, NULL}, false},
+      {{"dataWindow", VL_ATTRIBUTE_BOX2I, {7, 8, 8, 9}, NULL}, true},
+      {{"dataWindow", VL_ATTRIBUTE_BOX2I, {8, 8, 7, 9}, NULL}, false},
+      {{"own", VL_ATTRIBUTE_INT, {INT32_MIN}, NULL}, true},
+      {{"own", VL_ATTRIBUTE_INT, {2147483648.0}, NULL}, false},
+      {{"own", VL_ATTRIBUTE_INT, {NAN}, NULL}, false},
+      {{"own", VL_ATTRIBUTE_BOX2I, {3, 3, 1, INT32_MAX}, NULL}, true},
+      {{"own", VL_ATTRIBUTE_BOX2I, {0, 0, 0, 2147483648.0}, NULL}, false},
+      {{"own", VL_ATTRIBUTE_FLOAT, {1e38}, NULL}, true},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    vlImage *image = make_image(context, 2, 2, 1, VL_PIXEL_F32, VL_ENCODING_LINEAR);
+    const vlResult wanted = rows[i].suits ? VL_OK : VL_ERROR_ARGUMENT;
+    if (vl_image_set_attribute(image, &rows[i].attribute) != wanted)
+      fail_msg("row %zu: %s", i, rows[i].attribute.name);
+    void *bytes = NULL;
+    size_t size;
+    vlError error;
+    if (vl_image_write_memory(image, ".exr", NULL, &bytes, &size, &error) != VL_OK)
+      fail_msg("row %zu: %s", i, error.message);
+    vl_release(context, bytes);
+    vl_image_destroy(image);
+  }
+  end_context(context);
+}
+
 static void test_half(void **state) {
   (void)state;
   for (uint32_t h = 0; h < 65536; h++) {
@@ -254,10 +305,11 @@ static void test_rename(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rename),     cmocka_unit_test(test_create),
-      cmocka_unit_test(test_get),        cmocka_unit_test(test_color),
-      cmocka_unit_test(test_attributes), cmocka_unit_test(test_half),
-      cmocka_unit_test(test_curves),     cmocka_unit_test(test_out_of_memory),
+      cmocka_unit_test(test_rename),        cmocka_unit_test(test_create),
+      cmocka_unit_test(test_get),           cmocka_unit_test(test_color),
+      cmocka_unit_test(test_attributes),    cmocka_unit_test(test_attributes_suit),
+      cmocka_unit_test(test_half),          cmocka_unit_test(test_curves),
+      cmocka_unit_test(test_out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -229,10 +229,13 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
     defs->film.lambda_min = low;
     defs->film.lambda_max = high;
   }
-  if (defs->film.buckets && defs->build.color == VL_COLOR_RGB)
-    return report_usage("--color rgb: there is no spectrum then%s",
-                        v->given ? "" : " (--spectrum 0 leaves the scene's out)");
-  return -1;
+  if (!defs->film.buckets || defs->build.color != VL_COLOR_RGB)
+    return -1;
+  if (v->given)
+    return report_usage("--color rgb: there is no spectrum then");
+  return report_usage(
+      "--color rgb: the film of %s is in wavelengths; --spectrum 0 leaves them out",
+      arguments->operands[0]);
 }
 
 bool job_sequence_is_planned(const Job *job, const Arguments *arguments) {

@@ -186,7 +186,8 @@ enum {
   VL_HOLDS_PLANES = 16,
   VL_HOLDS_TIME = 32, /* shutter */
   VL_HOLDS_EXPOSURE = 64,
-  VL_HOLDS_ALL = 128 /* every property; nothing is checked */
+  VL_HOLDS_MOTION = 128,
+  VL_HOLDS_ALL = 256 /* every property; nothing is checked */
 };
 
 void vl_camera_put(vlCameraText *text, const char *format, ...) VL_PRINTF(2, 3);

@@ -112,7 +112,7 @@ static vlResult hold(const vlCameraFile *file, const vlCameraDef *d, uint32_t ho
       {"vignetting", lens->vignetting},
       {"shutter_curve", camera->shutter_points != 0},
       {"readout", camera->readout != 0.0},
-      {"motion", camera->moves},
+      {"motion", !(holds & VL_HOLDS_MOTION) && camera->moves},
       {"stereo", d->stereo.mode != VL_STEREO_NONE && d->stereo_eye == VL_EYE_BOTH},
   };
   for (size_t i = 0; i < VL_LENGTH(fields); i++)

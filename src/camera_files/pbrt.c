@@ -11,8 +11,9 @@
 static const double equal_area_axes[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
 static const double equirectangular_axes[9] = {0, 0, -1, 0, 1, 0, -1, 0, 0};
 
-static void put_transform(vlCameraText *text, const vlCamera *c, const double *axes) {
-  vlMat4 m = vl_mat4_load(c->camera_from_world);
+static void put_transform(vlCameraText *text, const double camera_from_world[16],
+                          const double *axes) {
+  vlMat4 m = vl_mat4_load(camera_from_world);
   if (axes) {
     vlMat4 turn = vl_mat4_identity();
     for (int i = 0; i < 9; i++)
@@ -26,6 +27,21 @@ static void put_transform(vlCameraText *text, const vlCamera *c, const double *a
       vl_camera_put(text, "%s%.17g", row + column ? " " : "", (row == 1 ? 0.0 - v : v) + 0.0);
     }
   vl_camera_put(text, "]\n");
+}
+
+static vlResult put_poses(vlCameraText *text, const vlCamera *c, const double *axes) {
+  if (c->moves)
+    vl_camera_put(text, "TransformTimes %.17g %.17g\nActiveTransform StartTime\n",
+                  c->pose_times[0], c->pose_times[1]);
+  put_transform(text, c->camera_from_world, axes);
+  if (!c->moves)
+    return VL_OK;
+  vlCamera close;
+  VL_TRY(vl_camera_at(c, c->pose_times[1], &close));
+  vl_camera_put(text, "ActiveTransform EndTime\n");
+  put_transform(text, close.camera_from_world, axes);
+  vl_camera_put(text, "ActiveTransform All\n");
+  return VL_OK;
 }
 
 static void put_plain(vlCameraText *text, const vlCamera *c, bool flat) {
@@ -49,7 +65,8 @@ static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
   vl_camera_put(text,
                 "# pixels count from the image's upper left corner; camera axes x right, y up, "
                 "z forward\n");
-  put_transform(text, c, !fit->sphere ? NULL : round ? equirectangular_axes : equal_area_axes);
+  const double *axes = !fit->sphere ? NULL : round ? equirectangular_axes : equal_area_axes;
+  VL_TRY(put_poses(text, c, axes));
   if (fit->sphere)
     vl_camera_put(text, "Camera \"spherical\" \"string mapping\" \"%s\"",
                   round ? "equirectangular" : "equalarea");
@@ -70,7 +87,7 @@ static vlResult write_pbrt(const vlFittedCamera *fit, vlCameraText *text) {
 
 const vlCameraFormat vl_format_pbrt = {
     .name = "pbrt",
-    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_LENS | VL_HOLDS_TIME | VL_HOLDS_MOTION,
     .plain = true,
     .spheres = true,
     .write = write_pbrt};

@@ -64,7 +64,8 @@ typedef struct vlExport {
   VL_ARRAY(vlExportLook) looks;
   /* pbrt */
   vlBytes text;
-  double shutter; /* seconds that it is open, to which pbrt's exposure is proportional */
+  double shutter;  /* seconds that it is open, to which pbrt's exposure is proportional */
+  double times[2]; /* of all motions, seconds; both 0: nothing moves */
 } vlExport;
 
 /* ---- export.c ---------------------------------------------------------------------------- */

@@ -35,7 +35,7 @@ for name in film lecture portal; do
   check "same_$name" "$VELO" image diff a.exr b.exr --threshold maxabs=1e-5
 done
 # Lights, shapes and media of every kind but curves and NanoVDB: the same image, to the bit.
-for name in lights media shapes; do
+for name in lights media motion shapes; do
   check "convert_$name" "$VELO" scene convert "$VELO_SOURCE_DIR/scenes/features/$name.pbrt" "$name.pbrt" --strict
   check "render_$name" "$VELO" render "$VELO_SOURCE_DIR/scenes/features/$name.pbrt" -o a.exr --resolution 48x36 --spp 2 --quiet
   check "render_${name}_again" "$VELO" render "$name.pbrt" -o b.exr --resolution 48x36 --spp 2 --quiet

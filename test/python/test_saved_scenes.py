@@ -250,6 +250,43 @@ def spherical_cameras():
                 assert abs(before - after).mean() < 0.02 * before.mean(), projection
 
 
+def pose(x, y, angle=0.0, size=1.0):
+    """Turned by an angle around z, scaled, then moved."""
+    c, s = size * numpy.cos(angle), size * numpy.sin(angle)
+    return numpy.array([[c, -s, 0, x], [s, c, 0, y], [0, 0, size, 0], [0, 0, 0, 1]])
+
+
+def from_above(x):
+    """The pose of a camera that looks down from a height of 3."""
+    return numpy.array([[1.0, 0, 0, x], [0, -1, 0, 0.1], [0, 0, -1, 3], [0, 0, 0, 1]])
+
+
+@case
+def motions():
+    """pbrt has one pair of times for all motions, and two poses of each; what has others is lost, and said."""
+    halves = [pose(0.4, 0), pose(0, 0.2), pose(-0.4, 0.4)]
+    bent = [pose(0.4, 0), pose(0.1, 0.2), pose(-0.4, 0.4)]
+    turn = [pose(0, 0), pose(0.3, 0, 1.2, 0.7)]
+    for name, times, poses, camera, lost in (("two poses", (0.1, 0.8), turn, None, []), ("on the way", (0.1, 0.45, 0.8), halves, None, []),
+                                             ("bent", (0.1, 0.45, 0.8), bent, None, ["motions over more than two poses"]),
+                                             ("camera", (0.1, 0.8), turn, (0.1, 0.8), []),
+                                             ("two times", (0.1, 0.8), turn, (0.2, 0.8), ["motions at times of their own"])):
+        scene = velo.Scene()
+        scene.add_light("infinite")
+        group = scene.add_group("cards")
+        scene.add_mesh(0.4 * CORNERS, FACES, group=group, material=scene.add_material("diffuse"))
+        scene.add_instance(group, poses, times)
+        moves = {"world_from_camera": from_above(-0.1), "world_from_camera_close": from_above(0.2), "pose_times": camera, "fov": 0.6}
+        scene.camera = velo.Camera(24, 16, shutter_open=0.2, shutter_close=0.7, **(moves if camera else CAMERA))
+        assert [str(loss).split(":")[0] for loss in scene.save(work("a.pbrt"))] == lost, (name, scene.save(work("a.pbrt")))
+        assert not broken_rules(work("a.pbrt")), broken_rules(work("a.pbrt"))
+        before, after = (numpy.asarray(one.render(spp=16)) for one in (scene, velo.load(work("a.pbrt"))))
+        still = numpy.asarray(scene.render(spp=16, camera=scene.camera.at(0.2)))
+        assert abs(before - still).mean() > 0.02 * before.mean(), f"{name}: nothing moves"
+        if not lost:
+            assert abs(before - after).mean() < 0.001 * before.mean(), name
+
+
 if __name__ == "__main__":
     write_images()
     cases.main()

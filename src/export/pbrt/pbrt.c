@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
+#include "math/motion.h"
 #include "math/transform.h"
 #include "velo/filter_kinds.h"
 #include "velo/light.h"
@@ -83,6 +84,24 @@ static void put_head(vlExport *x, const char *text) {
   vl_bytes_put(x->context, &x->text, rest, (size_t)(world - rest));
 }
 
+/* pbrt has one pair of times for all motions. They are those of the camera, or else of the
+ * first instance that moves. camera: its text, which has its own; null: it is left out. */
+static void put_times(vlExport *x, const char *camera) {
+  const char *own = camera ? strstr(camera, "TransformTimes") : NULL;
+  if (own) {
+    sscanf(own, "TransformTimes %lf %lf", &x->times[0], &x->times[1]);
+    return;
+  }
+  VL_EACH_ITEM(const vlSceneInstance, instance, &x->scene->instances) {
+    if (instance->hidden || !instance->keys)
+      continue;
+    x->times[0] = instance->times[0];
+    x->times[1] = instance->times[instance->keys - 1];
+    PUT("TransformTimes %.17g %.17g\n", x->times[0], x->times[1]);
+    return;
+  }
+}
+
 static bool put_camera(vlExport *x) {
   const vlSceneDefs *defs = &x->scene->defs;
   vlCameraRecord record = {.camera = defs->camera};
@@ -100,10 +119,11 @@ static bool put_camera(vlExport *x) {
   }
   double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
   bool has_shutter = held && shutter > 0 && strstr(text.text.items, "shutterclose");
-  VL_ARRAY_FREE(x->context, &text.text);
   x->shutter = has_shutter ? shutter : 1;
   vl_pbrt_film(x);
   put_options(x);
+  put_times(x, held ? text.text.items : NULL);
+  VL_ARRAY_FREE(x->context, &text.text);
   return true;
 }
 
@@ -214,6 +234,40 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
+/* Whether all poses are, but for rounding, those of a motion from the first one to the last. */
+static bool is_one_motion(const vlSceneInstance *instance) {
+  const uint32_t last = instance->keys - 1;
+  const double *times = instance->times;
+  for (uint32_t k = 1; k < last; k++) {
+    const double *pose = instance->poses + 16 * (size_t)k;
+    const double f = (times[k] - times[0]) / (times[last] - times[0]);
+    double between[16];
+    vl_motion_at(instance->poses, instance->poses + 16 * (size_t)last, f, between);
+    for (int i = 0; i < 16; i++)
+      if (!(fabs(between[i] - pose[i]) <= 1e-6 * (1 + fabs(pose[i]))))
+        return false;
+  }
+  return true;
+}
+
+/* Writes the pose of an instance, or its first and its last one. */
+static void put_poses(vlExport *x, const vlSceneInstance *instance) {
+  if (!instance->keys) {
+    vl_pbrt_matrix(x, instance->world_from_group);
+    return;
+  }
+  const uint32_t last = instance->keys - 1;
+  if (!is_one_motion(instance))
+    vl_export_lose(x, "motions over more than two poses: from the first one to the last");
+  if (instance->times[0] != x->times[0] || instance->times[last] != x->times[1])
+    vl_export_lose(x, "motions at times of their own: at those of the first that moves");
+  PUT("  ActiveTransform StartTime\n");
+  vl_pbrt_matrix(x, instance->poses);
+  PUT("  ActiveTransform EndTime\n");
+  vl_pbrt_matrix(x, instance->poses + 16 * (size_t)last);
+  PUT("  ActiveTransform All\n");
+}
+
 static bool put_groups(vlExport *x) {
   const vlScene *s = x->scene;
   for (size_t g = 0; g < s->groups.count; g++) {
@@ -228,10 +282,8 @@ static bool put_groups(vlExport *x) {
   VL_EACH_ITEM(const vlSceneInstance, instance, &s->instances) {
     if (instance->hidden)
       continue;
-    if (instance->keys)
-      vl_export_lose(x, "instances that move: as they stand at first");
     PUT("AttributeBegin\n");
-    vl_pbrt_matrix(x, instance->world_from_group);
+    put_poses(x, instance);
     PUT("  ObjectInstance \"object%u\"\nAttributeEnd\n", instance->group.index);
   }
   return true;

@@ -1,12 +1,28 @@
 /* export/pbrt/row.c: writes the members of a def as parameters of pbrt's language, by the row
  * of its kind. */
 
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
 /* The value in the unit of the file. */
 static double in_files(const vlParameter *p, double value) {
   return p->factor != 0 ? value / p->factor : value;
+}
+
+/* Writes as few digits as are needed to read the same number again: 360 degrees, not those of
+ * the float next to 2 pi. */
+static void put_float(vlExport *x, const vlParameter *p, float v) {
+  const double value = in_files(p, (double)v);
+  const double factor = p->factor != 0 ? p->factor : 1;
+  char text[32];
+  int digits = 6;
+  do
+    snprintf(text, sizeof text, "%.*g", digits++, value);
+  while (digits <= 17 && (float)(strtod(text, NULL) * factor) != v);
+  PUT(" \"float %s\" [%s]", p->name, text);
 }
 
 static const char *vector_type(const vlParameter *p) {
@@ -24,8 +40,7 @@ void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
       PUT(" \"integer %s\" [%u]", p->name, *(const uint32_t *)at);
       break;
     case VL_PARAMETER_FLOAT:
-      PUT(p->factor != 0 ? " \"float %s\" [%.17g]" : " \"float %s\" [%.9g]", p->name,
-          in_files(p, (double)*(const float *)at));
+      put_float(x, p, *v);
       break;
     case VL_PARAMETER_DOUBLE:
       PUT(" \"float %s\" [%.17g]", p->name, in_files(p, *(const double *)at));

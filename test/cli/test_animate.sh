@@ -28,6 +28,13 @@ expect_code 1 frames_differ "$VELO" image diff f00.exr f03.exr --threshold diffe
 check again "$VELO" render --again f02.exr -o again.exr --quiet
 check again_same cmp again.exr f02.exr
 rm f01.exr
+# The motion of one exposure, in pbrt's language.
+check convert_motion "$VELO" scene convert walk.gltf walk.pbrt --at 0.5:1.5
+check convert_times grep -q '^TransformTimes 0 1$' walk.pbrt
+check convert_end grep -A9 'ActiveTransform EndTime' walk.pbrt
+expect_text convert_way 'ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 3 0 0 1]'
+expect_code 2 convert_late "$VELO" scene convert walk.gltf walk.pbrt --at 2:1
+expect_code 2 convert_word "$VELO" scene convert walk.gltf walk.pbrt --at 1:
 check skip "$VELO" render walk.gltf --animate 0:2 --fps 2 $options -o f%02d.exr --skip-existing
 check skip_some test "$(printf '%s' "$err" | grep -c 'wrote f01.exr')$(printf '%s' "$err" | grep -c 'wrote')" = 11
 check some "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 1-3:2 $options -o g%02d.exr

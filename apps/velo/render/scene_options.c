@@ -172,29 +172,36 @@ static void tell_camera(const vlSceneDefs *s, const double moved[3]) {
       c->lookat[1] + moved[1], c->lookat[2] + moved[2], c->up[0], c->up[1], c->up[2], d);
 }
 
-/* Reads --at T, --at T0:T1 and --shutter S. */
+static bool read_seconds(const char *text, char **end, double *seconds) {
+  *seconds = strtod(text, end);
+  return *end != text && fabs(*seconds) <= 1e6;
+}
+
+int scene_read_times(const OptionValue *at, vlLoadDef *load) {
+  if (!at->given)
+    return -1;
+  char *end;
+  bool ok = read_seconds(at->text, &end, &load->time);
+  if (ok && *end == ':')
+    ok = read_seconds(end + 1, &end, &load->time_close);
+  if (!ok || *end)
+    return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
+  if (load->time_close < load->time)
+    return report_usage("--at \"%s\": the shutter cannot close before it opens", at->text);
+  return -1;
+}
+
+/* Reads --at and --shutter S. */
 static int choose_times(const OptionValue *v, vlLoadDef *load) {
   const OptionValue *at = &v[RENDER_AT], *shutter = &v[RENDER_SHUTTER];
   if (shutter->given && !at->given)
     return report_usage("--shutter goes with --at SECONDS");
-  if (!at->given)
+  TRY(scene_read_times(at, load));
+  if (!shutter->given)
     return -1;
-  char *end;
-  load->time = strtod(at->text, &end);
-  bool ok = end != at->text && fabs(load->time) <= 1e6;
-  if (ok && *end == ':') {
-    const char *text = end + 1;
-    load->time_close = strtod(text, &end);
-    ok = end != text && fabs(load->time_close) <= 1e6;
-    if (ok && shutter->given)
-      return report_usage("--at \"%s\" says already when the shutter closes", at->text);
-    if (ok && !(load->time_close >= load->time))
-      return report_usage("--at \"%s\": the shutter cannot close before it opens", at->text);
-  }
-  if (!ok || *end)
-    return report_usage("--at \"%s\": must be SECONDS or T0:T1, within a million", at->text);
-  if (shutter->given)
-    load->time_close = load->time + shutter->number;
+  if (!isnan(load->time_close))
+    return report_usage("--at \"%s\" says already when the shutter closes", at->text);
+  load->time_close = load->time + shutter->number;
   return -1;
 }
 

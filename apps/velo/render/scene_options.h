@@ -25,6 +25,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
 void scene_opening_close(SceneOpening *opening);
 /* Turns the camera as it was opened as --turn asks. *defs: the scene's. */
 void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
+/* Reads --at T or --at T0:T1 where it is given. Returns -1 or the exit code. */
+int scene_read_times(const OptionValue *at, vlLoadDef *load);
 /* Sets the directions up and front for an axis (0: x) that points up. */
 void scene_choose_up(int axis, vlCompleteDef *def);
 /* Whether it is a glTF file, by its name. */

@@ -2,6 +2,7 @@
  * losses. */
 
 #include "cli/commands.h"
+#include "cli/macros.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/output_names.h"
@@ -36,8 +37,9 @@ static Option convert_options[] = {
     {CONVERT_CAMERA, "camera", "glTF: camera to write, by name or number from 0", OPTION_TEXT,
      "NAME"},
     {CONVERT_AT, "at",
-     "glTF: time of the animation in seconds; default: the model without animation",
-     OPTION_NUMBER, "SECONDS", -1e6, 1e6},
+     "glTF: time of the animation in seconds; T1: time at which the shutter closes, for what "
+     "moves in a .pbrt file. Default: the model without animation",
+     OPTION_TEXT, "T[:T1]"},
     {CONVERT_ANIMATION, "animation",
      "glTF: animation to play, by name or number from 0; several separated by commas, or all",
      OPTION_TEXT, "NAME"},
@@ -80,8 +82,7 @@ static int run_convert(const Arguments *arguments, vlContext *context) {
   vlLoadDef load = vl_default_load_def();
   options_put(arguments->command->options, v, VL_SETTING_LOAD, &load);
   load.strict = false; /* --strict is of what is written */
-  if (v[CONVERT_AT].given)
-    load.time = v[CONVERT_AT].number;
+  TRY(scene_read_times(&v[CONVERT_AT], &load));
   vlSaveDef save = vl_default_save_def();
   save.strict = v[CONVERT_STRICT].given;
   save.lost = tell;

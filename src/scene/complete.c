@@ -58,11 +58,12 @@ static void set_framed(vlScene *scene, const vlExtent *box) {
 /* ---- the camera -------------------------------------------------------------------------- */
 
 /* The view frustum. sides: offset of each side plane, which is the maximum over all points of x
- * - z tan(half angle) for the right side, and likewise for the others. */
+ * - z tan(half angle) for the right side, and likewise for the others. near, far: the limits of
+ * z. */
 typedef struct Frame {
   double center[3], right[3], up[3], ahead[3];
   double tan_x, tan_y;
-  double sides[4];
+  double sides[4], near, far;
 } Frame;
 
 static void widen(void *user, const double p[3]) {
@@ -73,6 +74,8 @@ static void widen(void *user, const double p[3]) {
   f->sides[1] = fmax(f->sides[1], -x - f->tan_x * z);
   f->sides[2] = fmax(f->sides[2], y - f->tan_y * z);
   f->sides[3] = fmax(f->sides[3], -y - f->tan_y * z);
+  f->near = fmin(f->near, z);
+  f->far = fmax(f->far, z);
 }
 
 /* Directions of the scene, and from where the camera looks. */
@@ -164,7 +167,7 @@ static const char *find_view(const vlScene *scene, const vlCompleteDef *def,
     return "from the front, a little from the right and above";
   const double flat = 0.2, chart = 0.4, against = -0.05, half_turn = M_PI;
   vl_facing_mean_normal(scene, y <= flat * fmin(x, z), n);
-  if (y <= flat * fmin(x, z)) {
+  if (fmin(x, z) > 0 && y <= flat * fmin(x, z)) {
     const bool below = vl_dot3(n, v->up) < against;
     const double high = 0.9 - 0.45 * y / (flat * fmin(x, z)); /* the flatter, the more so */
     v->elevation = below ? -high : high;
@@ -228,6 +231,7 @@ static void set_camera(vlScene *scene, const double up[3], double fov, const dou
 static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
                          const vlExtent *boxes, const bool *without) {
   const double fov = 0.6, margin = v->on_plain ? 0.7 : 0.9; /* some ground is seen around */
+  const double closest = 0.2; /* distance of the nearest point, in parts of the depth of all */
   const vlSceneDefs *s = &scene->defs;
   double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height,
          lookat[3], eye[3];
@@ -243,6 +247,8 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
   vl_cross3(f.right, f.ahead, f.up);
   for (int i = 0; i < 4; i++)
     f.sides[i] = -INFINITY;
+  f.near = INFINITY;
+  f.far = -INFINITY;
   vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
@@ -250,6 +256,8 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box,
     y = 0.5 * (f.sides[2] - f.sides[3]);
     d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x),
              (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
+    /* what is thin and long, and seen from its end, is not touched by the camera */
+    d = fmax(d, closest * (f.far - f.near) - f.near);
   }
   if (!(d > 0) || !isfinite(d))
     d = 1;

@@ -87,6 +87,10 @@ same continued_is_the_whole continued.pfm whole.pfm
 # The number of light paths of the bidirectional tracer.
 check bidirectional render named.pbrt --tracer bidirectional --crop 0,0,1,1 --log-json -o b.exr
 expect_text light_paths_are_raced '"event": "tracer"'
+check each_trial_is_listed python3 -c 'import json, sys
+event = next(event for event in map(json.loads, sys.argv[1].splitlines()) if event["event"] == "tracer")
+names = [(trial["tracer"], trial.get("light_paths")) for trial in event["trials"]]
+assert len(names) > 2 and len(set(names)) == len(names), names' "$err"
 check as_many render named.pbrt --tracer bidirectional --light-paths 500 --crop 0,0,1,1 --log-json -o b.exr
 case "$err" in *'"event": "tracer"'*) fail given_light_paths_stay ;; *) pass given_light_paths_stay ;; esac
 check no_paths render named.pbrt --tracer bidirectional --light-paths 0 --spp 4 --crop 40,40,56,56 -o none.pfm

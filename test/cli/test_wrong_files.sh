@@ -135,8 +135,14 @@ wrong 3 stl_without_faces '.*empty\.stl: it has no faces' empty.stl
 # What other programs write: it is read.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\nusemtl a\nl 1/1 2/1 -1\nl 2 3\n' >marks.obj
 check marks "$VELO" render marks.obj --spp 1 --resolution 16x16 -o marks.exr
-expect_text marks_say 'its points and lines are balls and tubes'
+expect_text marks_say 'note: marks.obj: its points and lines are balls and tubes'
 check marks_shapes sh -c '"$0" scene info marks.obj | grep -q "2: 1 sphere, 1 curve"' "$VELO"
+for end in '1 0 0' '0 1 0' '0 0 1' '1 2 3'; do # a single line, also one that leads to the camera
+  printf 'v 0 0 0\nv %s\nl 1 2\n' "$end" >line.obj
+  check "line_to_${end// /_}" "$VELO" render line.obj --spp 1 --resolution 16x16 -o line.exr
+  read -r -a at <<<"$(printf '%s' "$err" | sed -n 's/.*: eye (\([^)]*\)).*/\1/p' | tr -d ,) $end"
+  check "its_end_is_not_the_camera_${end// /_}" awk "BEGIN {exit !(sqrt((${at[0]} - ${at[3]})^2 + (${at[1]} - ${at[4]})^2 + (${at[2]} - ${at[5]})^2) > 0.5)}"
+done
 printf 'v 0 0 0\nv 1 0 0\np 4\n' >marks_bad.obj
 wrong 3 marks_bad '.*marks_bad\.obj:3:[0-9]+: "4" is none of the 2 vertices' marks_bad.obj
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\no caf\303\251\nf 1 2 3\n' >plain.obj

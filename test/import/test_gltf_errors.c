@@ -108,7 +108,7 @@ static void misspelt(void **state) {
       "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColourFactor\":[1,1,1,1],"
       "\"roughnessFactor\":-3,"
       "\"metallicFactor\":2},\"other_name\":1,\"\":1,\"extensions\":{\"KHR_materials_ior\":{\"ior\":2,"
-      "\"indx\":2}}},{\"other_name\":1},{\"other_name\":1,\"doubleSidedd\":true}],"
+      "\"indx\":2}}},{\"other_name\":1,\"alphaMod\":1},{\"other_name\":1,\"alphaMod\":1,\"doubleSidedd\":true}],"
       "\"meshes\":[{\"primitives\":[{\"attributes\":{"
       "\"POSITION\":0,\"NROMAL\":0,\"TEXCOORD_9\":0,\"_MINE\":0},\"material\":0}]}]");
   in_log(&l,
@@ -117,6 +117,9 @@ static void misspelt(void **state) {
   in_log(&l, "attributes: unknown name \"NROMAL\" is ignored (did you mean \"NORMAL\"?)");
   in_log(&l,
          "materials[0]: unknown name \"other_name\" is ignored, here and in 2 other places");
+  in_log(&l,
+         "materials[1]: unknown name \"alphaMod\" is ignored (did you mean \"alphaMode\"?), "
+         "here and in 1 other place");
   in_log(&l, "materials[0].extensions.KHR_materials_ior: unknown name \"indx\" is ignored");
   in_log(&l, "materials[0]: unknown name \"\" is ignored");
   in_log(
@@ -129,7 +132,7 @@ static void misspelt(void **state) {
   size_t unknown = 0;
   for (const char *at = l.log; (at = strstr(at, "unknown name")); at++)
     unknown++;
-  assert_int_equal(unknown, 6);
+  assert_int_equal(unknown, 7);
   end_load(&l);
   free(g);
   /* no glTF, by the name */

@@ -236,6 +236,21 @@ def length_of_a_direction():
 
 
 @case
+def lights_of_images():
+    """pbrt's projection and goniometric lights have no position: it is part of their transform."""
+    # z of the light goes to (0.3, 0.4, -0.866), and the position to (-0.7, -0.9, 1.7)
+    x, z = numpy.array([0.8, -0.6, 0.0]), numpy.array([0.3, 0.4, -0.75**0.5])
+    turned = numpy.eye(4)
+    turned[:3, :3] = numpy.stack([x, numpy.cross(z, x), z], axis=1)
+    position = turned[:3, :3].T @ (-0.7, -0.9, 1.7)
+    for kind in ("projection", "goniometric"):
+        def words_of(scene):
+            scene.add_light(kind, path=work("c.png"), position=position, world_from_light=turned, scale=40.0)
+            return {"material": scene.add_material("diffuse")}
+        assert not compare(kind, words_of, "a.pbrt"), kind
+
+
+@case
 def spherical_cameras():
     """The whole sphere in a pbrt file is pbrt's spherical camera; a part of it is lost."""
     for projection, size in (("equirectangular", (16, 8)), ("equal_area", (12, 12))):

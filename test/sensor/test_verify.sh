@@ -11,6 +11,8 @@ dsnu: 4 e-
 prnu: 2 %
 crosstalk: [[0, 0.02, 0], [0.02, 0.92, 0.02], [0, 0.02, 0]]
 YAML
+gzip -c noisy.yaml >packed.yaml # by its content
+check packed "$VELO" sensor verify packed.yaml
 check noisy "$VELO" sensor verify noisy.yaml --plot plot.svg
 for row in gain efficiency saturation 'dark noise' 'dark current' DSNU PRNU 'linearity error' 'MTF error'; do
   case "$out" in *"$row, "*|*"$row to "*) pass "row_${row// /_}" ;; *) fail "row_${row// /_}" ;; esac

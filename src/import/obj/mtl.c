@@ -81,12 +81,11 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
 
 static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_t most,
                            double *values) {
-  char *at = obj->at;
   uint32_t count = 0;
   /* reads as many numbers as there are; a name or an option follows */
   for (; count < most; count++) {
+    char *const at = obj->at;
     uint32_t one;
-    at = obj->at;
     if (!vl_obj_numbers(obj, 1, &values[count], &one) || !one) {
       obj->at = at;
       break;

@@ -276,12 +276,16 @@ static void emit_by_second_set(vlScene *scene, vlEmissionDef *def) {
 }
 
 /* Shapes that emit in these ways. The normals of the second's corners lie on both sides of its
- * faces: the side of the light changes within them. */
+ * faces: the side of the light changes within them. The third is so small that its area is
+ * sampled, not its solid angle. */
 static const char *const emitting_shapes[][2] = {
     {"bilinearmesh", "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3]"},
     {"trianglemesh",
      "\"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 .3] \"integer indices\" [0 1 2 2 1 3] "
      "\"normal N\" [.1 .2 1 .2 0 -.6 0 .1 1 .2 .1 1]"},
+    {"trianglemesh",
+     "\"point3 P\" [-.1 -.1 0 .1 -.1 0 -.1 .1 0] \"integer indices\" [0 1 2] "
+     "\"point2 uv\" [0 0 1 0 0 1]"},
 };
 
 /* A shape that is placed above the floor, and emits. */
@@ -421,6 +425,10 @@ static void laws_of_emission(void **state) {
       check_emitting_shape("emission", family->rows[k]->name, emitting_shapes[i == 0][0],
                            emitting_shapes[i == 0][1], emissions[i]);
   static char text[TEXT];
+  for (size_t i = 0; i < sizeof emissions / sizeof *emissions; i++) {
+    emitting_text(text, emitting_shapes[2][0], emitting_shapes[2][1], emissions[i]);
+    check_samples_of_light("emission", "diffuse", emissions[i], text);
+  }
   change_emission = emit_by_second_set;
   emitting_text(text, "disk", "\"float radius\" .01", "");
   check_hit_light("emission", "diffuse", TEXTURE_OF_FILENAME, text, false);

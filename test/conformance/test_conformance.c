@@ -2,6 +2,7 @@
  * the rows; what they need beyond a row is the kind's case. */
 #include "bumps.h"
 #include "cameras.h"
+#include "channels.h"
 #include "conformance.h"
 #include "coverages.h"
 #include "densities.h"
@@ -94,6 +95,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(turned_materials),
       cmocka_unit_test(laws_of_shading),
+      cmocka_unit_test(channels_of_materials),
       cmocka_unit_test(laws_of_descriptions),
       cmocka_unit_test(formulas_of_materials),
       cmocka_unit_test(laws_of_layers),

@@ -66,6 +66,17 @@ static bool write_quarters(const char *name) {
   return write_square(name, 8, pixels);
 }
 
+/* The same image, of one channel; the lowest row is the file's first. */
+static bool write_grey_quarters(const char *name) {
+  char file[300] = "Pf\n8 8\n-1.0\n";
+  const size_t head = strlen(file);
+  for (int i = 0; i < 64; i++) {
+    const float value = (i % 8 < 4 ? 0.2f : 0.4f) + (i < 32 ? 0.4f : 0.0f);
+    memcpy(file + head + 4 * (size_t)i, &value, sizeof value);
+  }
+  return write_bytes(name, file, head + 256);
+}
+
 /* An image of 8 x 8 pixels whose left half is black, the right one white. */
 static bool write_halves(const char *name) {
   float pixels[3 * 64];
@@ -197,9 +208,10 @@ static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
               write_image("other.pfm", 3) && write_image("normals.pfm", 4) &&
               write_nameless("normals.img", 4) && write_image("a.tga", 5) &&
-              write_quarters("quarters.pfm") && write_halves("halves.pfm") &&
-              write_grain("grain.pfm") && write_tilted("tilted.pfm") &&
-              write_lamp("lamp.ies", 2, 1) && write_lamp("other.ies", 3, 9);
+              write_quarters("quarters.pfm") && write_grey_quarters("grey.pfm") &&
+              write_halves("halves.pfm") && write_grain("grain.pfm") &&
+              write_tilted("tilted.pfm") && write_lamp("lamp.ies", 2, 1) &&
+              write_lamp("other.ies", 3, 9);
   done = done && write_bytes("a.ply", ply, sizeof ply - 1) &&
          write_bytes("quad.ply", quad_ply, sizeof quad_ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) &&

@@ -81,8 +81,10 @@ static void check_placings(const vlKindRow *row, const char *parameters) {
 /* ---- tangents ---------------------------------------------------------------------------- */
 
 /* What a metal with a normal map and brushed along given tangents sends under a map, where it
- * is in a still (1) or in a moving object (2), or in none (0). */
-static Scattering *brushed(const double map[16], int placing, float sign) {
+ * is in a still (1) or in a moving object (2), or in none (0). last_first: its faces are in the
+ * other order. */
+static Scattering *brushed(const double map[16], int placing, float sign, bool last_first) {
+  static const uint32_t exchanged[6] = {0, 2, 3, 0, 1, 2};
   static const float normals[12] = {0.3f, 0, 1, 0, 0.2f, 1, -0.1f, 0, 1, 0, 0.4f, 1};
   static const float tangents[12] = {1, 0.3f, 0, 1, 0.2f, 0, 0.8f, 0.4f, 0, 1, 0, 0};
   const float signs[4] = {sign, sign, sign, sign};
@@ -98,6 +100,8 @@ static Scattering *brushed(const double map[16], int placing, float sign) {
   square.normals = normals;
   square.tangents = tangents;
   square.tangent_signs = signs;
+  if (last_first)
+    square.indices = exchanged;
   square.material = vl_scene_add_material(scene, &metal);
   if (placing)
     square.group = vl_scene_add_group(scene, "o");
@@ -124,16 +128,17 @@ static void check_tangents(float sign, bool mirrored) {
   const double side = mirrored ? -1 : 1;
   const double map[16] = {1.2, 0.3 * side, 0.1, 0, 0.2, 0.9 * side, 0, 0,
                           0,   0,          1,   0, 0,   0,          0, 1};
-  Scattering *direct = brushed(map, 0, sign);
-  for (int placing = 1; placing < 3; placing++) {
-    Scattering *other = brushed(map, placing, sign);
+  static const char *const names[3] = {"the other order of faces", "a still object",
+                                       "a moving object"};
+  Scattering *direct = brushed(map, 0, sign, false);
+  for (int placing = 0; placing < 3; placing++) {
+    Scattering *other = brushed(map, placing, sign, placing == 0);
     uint32_t differ = 0;
     for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
       differ += !close_to((double)direct->pdf[i], (double)other->pdf[i], 5e-3);
     if (differ)
-      broken("shapes", "trianglemesh", "%s object, %s: %u of %u densities by tangents differ",
-             placing == 1 ? "a still" : "a moving", mirrored ? "mirrored" : "stretched", differ,
-             VL_OWN_BATCH);
+      broken("shapes", "trianglemesh", "%s, %s: %u of %u densities by tangents differ",
+             names[placing], mirrored ? "mirrored" : "stretched", differ, VL_OWN_BATCH);
     free_scattering(other);
   }
   free_scattering(direct);

@@ -8,6 +8,7 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "schema/schema.h"
 #include "shapes.h"
 #include "trace/trace.h"
 #include "unit.h"
@@ -540,8 +541,36 @@ static void check_color_through_portal(vlColorMode mode) {
   }
 }
 
+/* The light of an image of one channel is that of the same image of three. */
+static void check_grey_image(const vlKindRow *row) {
+  static const char *const files[] = {"quarters.pfm", "grey.pfm"};
+  static char text[TEXT];
+  double colors[2][3];
+  for (int i = 0; i < 2; i++) {
+    snprintf(text, sizeof text,
+             HEAD "WorldBegin " FLOOR
+                  "Translate 0 1 0 Rotate 90 1 0 0 LightSource \"%s\" "
+                  "\"string filename\" \"%s\"\n",
+             row->name, files[i]);
+    vlImage *image = image_of_floor_in(VL_COLOR_RGB, text, VL_TRACER_PATH, 16, 0.1, 0.2, 0.5);
+    for (uint32_t c = 0; c < 3; c++) {
+      const Mean mean = mean_of_channel(image, c);
+      colors[i][c] = mean_of(&mean);
+    }
+    vl_image_destroy(image);
+  }
+  for (int c = 0; c < 3; c++)
+    if (!(colors[0][c] > 0 && fabs(colors[1][c] - colors[0][c]) < 1e-3 * colors[0][c]))
+      broken("lights", row->name, "channel %d of an image of one channel: %.4f, of three %.4f",
+             c, colors[1][c], colors[0][c]);
+}
+
 static void colors_of_lights(void **state) {
   (void)state;
+  const vlKindFamily *lights = vl_kind_family_find("lights");
+  for (uint32_t k = 0; k < lights->kind_count; k++)
+    if (vl_row_find(lights->rows[k], "filename"))
+      check_grey_image(lights->rows[k]);
   for_each_light(FLOOR, check_colors);
   check_color_through_portal(VL_COLOR_SPECTRAL);
   check_color_through_portal(VL_COLOR_RGB);

@@ -302,6 +302,11 @@ static void known(void **state) {
     assert_close("cosine beam", info.beam[k] * 180 / PI, 120, 1e-3);
     assert_close("cosine field", info.field[k] * 180 / PI, 2 * acos(0.1) * 180 / PI, 1e-3);
   }
+  info = info_of(
+      "TILT=NONE\n1 1000 1 4 2 1 1 0 0 0\n1 1 0\n0 30 60 90\n0 180\n"
+      "5 5 5 5\n5 5 5 50\n");
+  assert_close("maximum at the end", info.max_intensity, 50, 1e-6);
+  assert_close("it is level", info.max_direction[1], 0, 1e-6);
   write_ies(no_lamp, 1, (Range){0, 0, 1}, (Range){0, 90, 10});
   info = info_of(text);
   assert_close("dark", info.flux + info.beam[0] + info.max_intensity, 0, 0);

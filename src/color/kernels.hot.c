@@ -33,11 +33,11 @@ static void uniform_wavelengths(float low, float span, uint32_t n, const float *
   }
 }
 
-typedef struct xyz {
+typedef struct Xyz {
   float x, y, z;
-} xyz;
+} Xyz;
 
-static inline xyz add_wavelength(const float *cmf, xyz s, float radiance, float lambda,
+static inline Xyz add_wavelength(const float *cmf, Xyz s, float radiance, float lambda,
                                  float inv_pdf) {
   float p = lambda - 360.0f;
   int j = (int)p;
@@ -61,7 +61,7 @@ static void rgb_from_radiance(const float *cmf, const float m[9], uint32_t n,
     q[i] = 0.25f * m[i];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    xyz s = {0.0f, 0.0f, 0.0f};
+    Xyz s = {0.0f, 0.0f, 0.0f};
     for (int c = 0; c < 4; c++)
       s = add_wavelength(cmf, s, radiance[c][i], lambda[c][i], inv_pdf[c][i]);
     r[i] = q[0] * s.x + q[1] * s.y + q[2] * s.z;

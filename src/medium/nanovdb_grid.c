@@ -37,7 +37,8 @@ typedef struct Tree {
   VL_ARRAY(float) tiles;
   VL_ARRAY(uint32_t) bricks;
   VL_ARRAY(float) values;
-  uint64_t most_bricks, nodes; /* nodes: number of lower nodes */
+  uint64_t max_bricks;
+  uint64_t nodes; /* number of lower nodes */
   vlError *error;
 } Tree;
 
@@ -158,7 +159,7 @@ static vlResult add_tile(Tree *t, float value, uint32_t *entry) {
 
 static vlResult add_leaf(Tree *t, uint64_t address, uint32_t *entry) {
   if (!fits(t, address, PNANOVDB_GRID_TYPE_GET(type, leaf_size)) ||
-      t->values.count / VL_BRICK_VALUES >= t->most_bricks)
+      t->values.count / VL_BRICK_VALUES >= t->max_bricks)
     return fail(t, "its tree is damaged");
   if (!VL_RESERVE(t->world->context, &t->values, VL_BRICK_VALUES))
     return vl_fail_memory(t->error);
@@ -280,7 +281,7 @@ static vlResult take_apart(Tree *t, vlSparseGrid *g) {
       pnanovdb_address_offset(root.address, PNANOVDB_GRID_TYPE_GET(type, root_off_background)));
   if (!isfinite(t->background))
     return fail(t, "its background is not finite");
-  t->most_bricks = t->size / PNANOVDB_GRID_TYPE_GET(type, leaf_size);
+  t->max_bricks = t->size / PNANOVDB_GRID_TYPE_GET(type, leaf_size);
   float *first = VL_PUSH(t->world->context, &t->tiles);
   if (!first)
     return vl_fail_memory(t->error);

@@ -20,6 +20,9 @@ typedef struct Child {
   FILE *messages; /* its standard error; null: not kept */
 } Child;
 
+/* Which line of its standard error explains a failure. */
+typedef enum ChildLine { CHILD_FIRST_LINE, CHILD_LAST_LINE } ChildLine;
+
 /* Looks for a program in the folders of a list like PATH; those that are no absolute paths are
  * left out. False: it is not there. */
 bool child_find(const char *folders, const char *name, char *program, size_t size);
@@ -31,9 +34,8 @@ int child_start(Child *child, const char *program, const char *const *words, int
 /* Writes to its standard input. False: it does not read any more, or a signal to velo came. */
 bool child_write(const Child *child, const char *data, size_t size);
 /* Closes its input and waits for its end. abandon: it is ended at once; so it is when a signal
- * to velo comes. line: the first or the last line that it has written, empty if there is none.
+ * to velo comes. which, line: that line of its standard error; empty if there is none.
  * Returns the status of waitpid; -1: the child is not known. */
-typedef enum ChildLine { CHILD_FIRST_LINE, CHILD_LAST_LINE } ChildLine;
 int child_finish(Child *child, bool abandon, ChildLine which, char *line, size_t size);
 /* Starts a program that reads and writes nothing but its files. messages: the file of its
  * standard error. Returns as child_start. */

@@ -13,7 +13,7 @@
 
 enum { MAX_DEPTH = 32, MAX_ANCHORS = 256, MAX_COPIES = 100000 };
 
-typedef struct {
+typedef struct Builder {
   json_t *tree[MAX_DEPTH]; /* open lists and maps; each is owned by the one before it */
   char *key[MAX_DEPTH];    /* key of the next value, in maps */
   int depth;

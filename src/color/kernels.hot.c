@@ -33,10 +33,13 @@ static void uniform_wavelengths(float low, float span, uint32_t n, const float *
   }
 }
 
+/* A colour of the CIE's standard observer. */
 typedef struct Xyz {
   float x, y, z;
 } Xyz;
 
+/* Adds one wavelength's share to a colour. cmf: the colour matching functions, 4 numbers for
+ * each nanometre from 360 on; between two they are linear. */
 static inline Xyz add_wavelength(const float *cmf, Xyz s, float radiance, float lambda,
                                  float inv_pdf) {
   float p = lambda - 360.0f;

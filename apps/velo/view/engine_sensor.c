@@ -21,8 +21,8 @@
 /* Buckets of the film: 48 bytes per pixel each. */
 enum { BUCKETS = 24, MAX_BUCKETS = 1000 };
 
-/* Of the meter, seconds. */
-static const double shortest_time = 1e-6, longest_time = 1e5;
+/* The exposure times that the meter chooses from, seconds. */
+static const double min_time = 1e-6, max_time = 1e5;
 
 void engine_sensor_film(vlFilmDef *def) {
   if (def->buckets < 2)
@@ -251,7 +251,7 @@ static vlResult meter(Shot *s, vlExposureDef *exposure, vlError *error) {
     trial.time = s->exposure.time;
   vlResult result = collect(s, &trial, error);
   const double time = engine_metered_time(s, exposure);
-  exposure->time = time > 0 ? fmin(fmax(time, shortest_time), longest_time) : 0.01;
+  exposure->time = time > 0 ? fmin(fmax(time, min_time), max_time) : 0.01;
   return result;
 }
 

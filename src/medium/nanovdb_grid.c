@@ -71,7 +71,7 @@ static vlResult add_block(Tree *t, const int32_t at[3], uint64_t node, float val
   uint64_t lower = PNANOVDB_GRID_TYPE_GET(type, lower_size);
   if (node && ++t->nodes > t->size / lower)
     return fail(t, "its tree is damaged");
-  if (t->blocks.count > MAX_BLOCKS)
+  if (t->blocks.count >= MAX_BLOCKS)
     return fail(t, "it fills too much space");
   Block *b = VL_PUSH(t->world->context, &t->blocks);
   if (!b)

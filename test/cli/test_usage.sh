@@ -19,6 +19,7 @@ usage() {
 }
 
 usage unknown_command 'did you mean "render"?' rendr scene.pbrt
+usage unknown_sign '"%é" is not known; there are %d' render scene.pbrt -o 'a%é.exr' --trajectory poses.tum
 usage unknown_help 'did you mean "--help"?' --hlep
 usage unknown_image_command 'did you mean "diff"?' image dif a b
 usage image_without_command 'info, diff, convert' image

@@ -22,6 +22,14 @@ static char sign_at(const char *at, size_t *length, int *width) {
   return digits == 0 && kind && strchr("ncv%", kind) ? kind : 0;
 }
 
+/* The bytes of an unknown sign: up to the end of its character in UTF-8. */
+static int sign_length(const char *at, size_t length) {
+  size_t bytes = at[1] ? length + 1 : 1;
+  while (((unsigned char)at[bytes] & 0xC0) == 0x80)
+    bytes++;
+  return (int)bytes;
+}
+
 int pattern_check(const char *pattern) {
   for (const char *at = strchr(pattern, '%'); at; at = strchr(at, '%')) {
     size_t length;
@@ -30,7 +38,7 @@ int pattern_check(const char *pattern) {
       return report_usage(
           "output \"%s\": \"%.*s\" is not known; there are %%d or %%04d (the frame's "
           "number), %%n (its name), %%c (camera), %%v (eye), %%%%",
-          pattern, (int)(at[1] ? length + 1 : 1), at);
+          pattern, sign_length(at, length), at);
     at += 1 + length;
   }
   return -1;

@@ -166,14 +166,18 @@ class Page:
 
     def wait(self, test, seconds=90):
         """The next message for which the test holds."""
-        until = time.monotonic() + seconds
+        until, seen = time.monotonic() + seconds, []
         while time.monotonic() < until:
-            message = self.receive(until - time.monotonic())
+            try:
+                message = self.receive(until - time.monotonic())
+            except TimeoutError:
+                break
             if isinstance(message, tuple):
                 raise ConnectionError(message)
             if test(message):
                 return message
-        raise TimeoutError
+            seen.append("frame" if isinstance(message, Frame) else message)
+        raise TimeoutError("%d other messages, the last: %s" % (len(seen), seen[-5:]))
 
     def wait_text(self, kind, seconds=90):
         return self.wait(lambda m: isinstance(m, dict) and m["type"] == kind, seconds)

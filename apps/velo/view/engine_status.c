@@ -24,8 +24,8 @@ void json_text_keep(Json *json, Engine *e, char **last) {
   char *text = json_text_end(json);
   if (!text)
     return;
+  engine_lock(e); /* a page that comes gets the text now, or by engine_greet */
   server_post(e->server, 0, text);
-  engine_lock(e);
   char *before = *last;
   *last = text;
   engine_unlock(e);

@@ -45,7 +45,7 @@ static int fail(const char *what, const vlError *error) {
 int main(int count, char **arguments) {
   static const char *const names[WAYS] = {"velo's", "own camera", "own sampler"};
   const char *path = count > 1 ? arguments[1] : "scenes/denoising/room.pbrt";
-  double focal = 250, least[WAYS] = {1e9, 1e9, 1e9};
+  double focal = 250, min[WAYS] = {1e9, 1e9, 1e9};
   const vlOwnCamera camera = {.name = "pinhole", .rays = pinhole, .user = &focal};
   const vlOwnSampler sampler = {.name = "independent", .numbers = independent};
   vlContext *context;
@@ -91,11 +91,11 @@ int main(int count, char **arguments) {
     if (vl_render(world, &compiled, film, &render, NULL, &error) != VL_OK)
       return fail("render", &error);
     double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
-    if (seconds < least[way])
-      least[way] = seconds;
+    if (seconds < min[way])
+      min[way] = seconds;
   }
   for (int way = 0; way < WAYS; way++)
-    printf("%-12s %.3f s, speed %.3f\n", names[way], least[way], least[0] / least[way]);
+    printf("%-12s %.3f s, speed %.3f\n", names[way], min[way], min[0] / min[way]);
   vl_film_destroy(film);
   vl_world_destroy(world);
   vl_scene_destroy(scene);

@@ -70,9 +70,9 @@ static inline vlAllocator fail_allocator(failAllocator *state) {
 }
 
 /* Runs the body once per allocation, with a context of one thread, and makes that allocation
- * fail. At least `least` runs are needed until one without a failure. */
+ * fail. At least `min` runs are needed until one without a failure. */
 static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *user), void *user,
-                                   long least) {
+                                   long min) {
   for (long n = 1;; n++) {
     failAllocator state = {.fail_at = n};
     vlContextDef def = vl_default_context_def();
@@ -93,7 +93,7 @@ static inline void fail_everywhere(vlResult (*body)(vlContext *context, void *us
     assert_int_equal(result, wanted);
     if (state.refused)
       continue;
-    assert_true(n > least);
+    assert_true(n > min);
     return;
   }
 }

@@ -22,7 +22,7 @@ typedef VL_ARRAY(Coat) Coats;
 enum { ALL_BOUNCES = 1000 };
 
 /* A loss below this fraction of the light gives no note. */
-static const double least = 0.01;
+static const double min = 0.01;
 
 static float alpha_of(const vlMaterialDef *m, float roughness) {
   return m->remap_roughness ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
@@ -84,17 +84,17 @@ static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
 static void check_coats(vlCheck *check) {
   Coats coats = {0};
   const vlMaterialDef *worst = NULL;
-  double most = 0, fewest = 1;
+  double max = 0, fewest = 1;
   uint32_t count = 0;
   for (size_t i = 0; i < check->scene->materials.count && !check->no_memory; i++) {
     const vlMaterialDef *m = &check->scene->materials.items[i];
     double lost = check->used[VL_SCENE_MATERIALS][i] ? loss_of(check, m, &coats) : 0;
-    if (lost < least)
+    if (lost < min)
       continue;
     count++;
-    if (lost > most) {
+    if (lost > max) {
       worst = m;
-      most = lost;
+      max = lost;
     }
     if (lost < fewest)
       fewest = lost;
@@ -107,13 +107,13 @@ static void check_coats(vlCheck *check) {
     vl_check_add(check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
                  "the rough coat of %s loses %.0f %% of the light over a white base, as "
                  "pbrt's does: \"bool conserveenergy\" true keeps it",
-                 name.text, 100 * most);
+                 name.text, 100 * max);
   else
     vl_check_add(
         check, VL_FINDING_ROUGH_COAT, VL_SEVERITY_NOTE, worst->source,
         "%u rough coats lose %.0f to %.0f %% of the light over a white base, as pbrt's do, "
         "that of %s most: \"bool conserveenergy\" true keeps it",
-        count, 100 * fewest, 100 * most, name.text);
+        count, 100 * fewest, 100 * max, name.text);
 }
 
 vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **check,

@@ -85,7 +85,7 @@ vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError
 static vlResult check_data(vlFilmFile *file, vlError *error) {
   vlFilmReader *r = &file->reader;
   if (!file->data)
-    file->data = vl_alloc(r->context, vl_film_most_data(&r->shape.def));
+    file->data = vl_alloc(r->context, vl_film_max_data(&r->shape.def));
   if (!file->data)
     return vl_fail_memory(error);
   return vl_film_reader_data(r, file->data, error);

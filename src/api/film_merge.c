@@ -124,16 +124,16 @@ static vlResult open_earlier(Merge *m, const char *output, bool overwrite) {
 /* The first of the parts' receipts in the order of strcmp, with its attributes, so that the
  * header of the result does not depend on the order of the files. */
 static const vlFilmTexts *choose_texts(const Merge *m) {
-  const vlFilmTexts *least = &m->parts[0].reader.texts;
+  const vlFilmTexts *min = &m->parts[0].reader.texts;
   for (uint32_t i = 1; i < m->count; i++) {
     const vlFilmTexts *texts = &m->parts[i].reader.texts;
-    int order = least->receipt ? strcmp(texts->receipt, least->receipt) : 0;
+    int order = min->receipt ? strcmp(texts->receipt, min->receipt) : 0;
     if (order == 0 && texts->attributes) /* films of earlier versions have none */
-      order = least->attributes ? strcmp(texts->attributes, least->attributes) : -1;
+      order = min->attributes ? strcmp(texts->attributes, min->attributes) : -1;
     if (order < 0)
-      least = texts;
+      min = texts;
   }
-  return least;
+  return min;
 }
 
 /* ---- samples of a block ------------------------------------------------------------------ */
@@ -311,7 +311,7 @@ static vlResult merge_block(Merge *m) {
 
 static vlResult merge_opened(Merge *m, const char *output) {
   const vlFilmShape *shape = &m->parts[0].reader.shape;
-  size_t size = vl_film_most_data(&shape->def);
+  size_t size = vl_film_max_data(&shape->def);
   m->sum = vl_alloc(m->context, size);
   m->data = vl_alloc(m->context, size);
   m->ranges = vl_alloc_array(m->context, VL_FILM_MAX_RANGES, sizeof *m->ranges);

@@ -58,8 +58,8 @@ static BlockHeader *header_of(void *block) {
 /* Adds to and subtracts from the count. False: beyond the limit, nothing is counted. */
 static bool count_memory(vlContext *context, size_t add, size_t sub) {
   size_t now = atomic_fetch_add(&context->held, add - sub) + (add - sub),
-         most = context->def.max_memory;
-  if (most && add && now > most) {
+         max = context->def.max_memory;
+  if (max && add && now > max) {
     atomic_fetch_sub(&context->held, add);
     return false;
   }

@@ -36,19 +36,19 @@ bool vl_machine_has_addresses(size_t bytes) {
 
 /* The memory of the machine, and of the control group where it is less. */
 static uint64_t machine_memory(void) {
-  uint64_t most = UINT64_MAX;
+  uint64_t max = UINT64_MAX;
 #if defined(__linux__)
   struct sysinfo info;
   if (sysinfo(&info) == 0)
-    most = ((uint64_t)info.totalram + info.totalswap) * info.mem_unit;
+    max = ((uint64_t)info.totalram + info.totalswap) * info.mem_unit;
   FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
   unsigned long long limit;
-  if (file && fscanf(file, "%llu", &limit) == 1 && limit < most)
-    most = limit;
+  if (file && fscanf(file, "%llu", &limit) == 1 && limit < max)
+    max = limit;
   if (file)
     fclose(file);
 #endif
-  return most;
+  return max;
 }
 
 /* Bytes of address space without memory: stacks, code, reservations. */
@@ -63,7 +63,7 @@ static uint64_t empty_addresses(void) {
 }
 
 uint64_t vl_memory_limit(const char **who) {
-  uint64_t most = machine_memory(), own = UINT64_MAX;
+  uint64_t max = machine_memory(), own = UINT64_MAX;
   struct rlimit limit;
   if (getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     own = limit.rlim_cur;
@@ -74,8 +74,8 @@ uint64_t vl_memory_limit(const char **who) {
       own = left;
   }
   if (who)
-    *who = own < most ? "the process may have" : "the machine has";
-  return own < most ? own : most;
+    *who = own < max ? "the process may have" : "the machine has";
+  return own < max ? own : max;
 }
 
 void vl_machine_return_memory(void) {

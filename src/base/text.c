@@ -81,7 +81,7 @@ void vl_list_name(char *list, size_t size, const char *name) {
 size_t vl_utf8_length(const char *text, size_t length, uint32_t *code) {
   const unsigned char *bytes = (const unsigned char *)text;
   /* by the number of bytes: the smallest code point; the highest bits of the first byte */
-  static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+  static const uint32_t min[5] = {0, 0, 0x80, 0x800, 0x10000};
   static const unsigned char lead[5] = {0, 0x00, 0xc0, 0xe0, 0xf0},
                              mask[5] = {0, 0x80, 0xe0, 0xf0, 0xf8};
   size_t n = 1;
@@ -95,7 +95,7 @@ size_t vl_utf8_length(const char *text, size_t length, uint32_t *code) {
       return 0;
     *code = *code << 6 | (bytes[i] & 0x3fu);
   }
-  return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
+  return *code >= min[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
 }
 
 bool vl_is_utf8(const char *text) {
@@ -114,12 +114,12 @@ static bool is_hidden(uint32_t c) {
          c >= 0xe0000;
 }
 
-/* The first `most` characters, as far as they and the mark of what is left out fit into `size`
+/* The first `max` characters, as far as they and the mark of what is left out fit into `size`
  * bytes. */
-static void show(const char *text, size_t length, uint32_t most, char *result, size_t size) {
+static void show(const char *text, size_t length, uint32_t max, char *result, size_t size) {
   const char *const more = "\u2026";
   size_t used = 0, at = 0;
-  for (uint32_t shown = 0; at < length && shown < most; shown++) {
+  for (uint32_t shown = 0; at < length && shown < max; shown++) {
     uint32_t code = 0;
     size_t n = vl_utf8_length(text + at, length - at, &code);
     if (used + (n ? n : 1) + strlen(more) >= size)

@@ -91,16 +91,16 @@ double vl_aperture_reach2(const vlAperture *a) {
 /* The bilinear support of a texel reaches to the centres of its neighbours, but not beyond the
  * square. */
 static double find_reach2(const vlAperture *a) {
-  double most = 0;
+  double max = 0;
   for (uint32_t y = 0; y < a->height; y++)
     for (uint32_t x = 0; x < a->width; x++) {
       if (!(a->values[(size_t)y * a->width + x] > 0))
         continue;
       double px = fmin(1, (fabs(2 * (x + 0.5) - a->width) + 2) / a->width);
       double py = fmin(1, (fabs(2 * (y + 0.5) - a->height) + 2) / a->height);
-      most = fmax(most, px * px + py * py);
+      max = fmax(max, px * px + py * py);
     }
-  return most;
+  return max;
 }
 
 static vlResult check(uint32_t width, uint32_t height, const float *values, double *sum,

@@ -119,10 +119,10 @@ static vlResult shape_numbers(const vlCameraDef *def, vlCamera *camera, vlError 
       value = n[i].standard;
     if (vl_is_unset(value))
       return vl_fail_argument(error, "camera: the %s projection needs its %s", name, n[i].name);
-    if (!(value >= n[i].least && value <= n[i].most))
+    if (!(value >= n[i].min && value <= n[i].max))
       return vl_fail_argument(error,
                               "camera: %s of the %s projection is %g; it must be %g to %g",
-                              n[i].name, name, value, n[i].least, n[i].most);
+                              n[i].name, name, value, n[i].min, n[i].max);
     if (def->projection == VL_PROJECTION_CUBE && value != 0.0 && value != 1.0)
       return vl_fail_argument(
           error, "camera: layout of the cube is %g; it must be 0 (a row) or 1 (a cross)",

@@ -87,10 +87,10 @@ static bool unfolded(const vlDistortionMap *m, double x, double y) {
   return below > 0.0 && w > edge_on && d.ux * d.vy - d.uy * d.vx > 0.0;
 }
 
-static double fold_along(const vlDistortionMap *m, double cosine, double sine, double most) {
+static double fold_along(const vlDistortionMap *m, double cosine, double sine, double max) {
   double before = 0.0;
-  for (double r = 1e-3; before < most; r *= 1.03) {
-    double here = r < most ? r : most;
+  for (double r = 1e-3; before < max; r *= 1.03) {
+    double here = r < max ? r : max;
     if (!unfolded(m, here * cosine, here * sine)) {
       double a = before, b = here;
       for (int i = 0; i < 60; i++) {
@@ -104,27 +104,27 @@ static double fold_along(const vlDistortionMap *m, double cosine, double sine, d
     }
     before = here;
   }
-  return most;
+  return max;
 }
 
-static double fold_radius(const vlDistortionMap *m, double most) {
+static double fold_radius(const vlDistortionMap *m, double max) {
   bool radial = m->tangential[0] == 0.0 && m->tangential[1] == 0.0 && m->tilt[6] == 0.0 &&
                 m->tilt[7] == 0.0;
   for (int i = 0; i < 4; i++)
     radial = radial && m->prism[i] == 0.0;
-  double radius = fmin(radial_fold(m), most);
+  double radius = fmin(radial_fold(m), max);
   if (radial)
     return radius;
   /* tangential terms of the undistorted point move the fold inwards or outwards, so the search
    * continues beyond the radial fold */
   if (!m->radial_first)
-    radius = most;
-  most = radius;
+    radius = max;
+  max = radius;
   for (int i = 0; i < DIRECTIONS; i++) {
     double angle = 2.0 * M_PI * i / DIRECTIONS;
     radius = fmin(radius, fold_along(m, vl_precise_cos(angle), vl_precise_sin(angle), radius));
   }
-  return radius < most ? 0.998 * radius : radius; /* margin for folds between the directions */
+  return radius < max ? 0.998 * radius : radius; /* margin for folds between the directions */
 }
 
 /* ---- number of Newton steps -------------------------------------------------------------- */
@@ -161,12 +161,12 @@ static double needed_radius(const vlCamera *c) {
     sine[i] = vl_precise_sin(0.25 * M_PI * i);
   }
   for (double r = 1e-3; r < m->radius && r < 1e6; r *= 1.05) {
-    double least = INFINITY;
+    double min = INFINITY;
     for (int i = 0; i < 8; i++) {
       vlDistorted d = vl_distort(m, r * cosine[i], r * sine[i]);
-      least = fmin(least, vl_length_2d(d.u, d.v));
+      min = fmin(min, vl_length_2d(d.u, d.v));
     }
-    if (least > 1.5 * corner)
+    if (min > 1.5 * corner)
       return r;
   }
   return fmin(m->radius, 1e6);
@@ -174,13 +174,13 @@ static double needed_radius(const vlCamera *c) {
 
 static uint32_t steps_everywhere(const vlCamera *c) {
   const vlDistortionMap *m = &c->distortion;
-  double most = needed_radius(c);
+  double max = needed_radius(c);
   uint32_t steps = 1;
   double radius[RINGS];
   for (int k = 0; k < RINGS; k++) {
     /* the points get denser towards the edge, because Newton's method is slow near a fold */
     double share = k < 32 ? (k + 1) / 33.0 : 1.0 - vl_precise_pow(10.0, 29.5 - k);
-    radius[k] = most * share;
+    radius[k] = max * share;
   }
   for (int i = 0; i < 24; i++) {
     double angle = 2.0 * M_PI * (i + 0.3) / 24;

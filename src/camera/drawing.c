@@ -192,11 +192,11 @@ static void surface(Pen *p, vlDrawingPart part, double depth) {
 }
 
 /* Every how many pixels there is a grid line: 1, 2, 5, 10, ... */
-static uint32_t grid_step(uint32_t size, uint32_t most) {
+static uint32_t grid_step(uint32_t size, uint32_t max) {
   static const uint32_t factors[3] = {1, 2, 5};
   for (uint64_t ten = 1;; ten *= 10)
     for (int i = 0; i < 3; i++)
-      if (size / (factors[i] * ten) <= (most ? most : 1))
+      if (size / (factors[i] * ten) <= (max ? max : 1))
         return (uint32_t)(factors[i] * ten);
 }
 

@@ -207,9 +207,9 @@ static bool solve_ray(const vlCameraCompiled *c, const double d[3], const FilmDe
   bool orthographic = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double tangent[2][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, p[2][2];
   if (!orthographic) {
-    int least = fabs(d[0]) < fabs(d[1]) ? 0 : 1;
+    int min = fabs(d[0]) < fabs(d[1]) ? 0 : 1;
     double axis[3] = {0.0, 0.0, 0.0};
-    axis[least] = 1.0;
+    axis[min] = 1.0;
     vl_cross3(d, axis, tangent[0]);
     vl_cross3(d, tangent[0], tangent[1]);
   }

@@ -85,7 +85,7 @@ static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
 /* The smallest scale of the box's ellipse that contains all passing rays, with a margin of two
  * steps of the search. */
 static double fill_of(const vlOptics *o, double r0, double r1, Box b) {
-  double cx = 0.5 * (b.x0 + b.x1), hx = 0.5 * (b.x1 - b.x0), most = 0.0;
+  double cx = 0.5 * (b.x0 + b.x1), hx = 0.5 * (b.x1 - b.x0), max = 0.0;
   const double radii[3] = {r0, 0.5 * (r0 + r1), r1};
   for (int n = 0; n < 3; n++)
     for (int i = 0; i <= ACROSS; i++)
@@ -93,10 +93,10 @@ static double fill_of(const vlOptics *o, double r0, double r1, Box b) {
         double x = b.x0 + 2.0 * hx * i / ACROSS, y = b.y1 * k / DOWN, ex = (x - cx) / hx,
                ey = y / b.y1;
         double e = sqrt(ex * ex + ey * ey);
-        if (e > most && passes(o, radii[n], x, y))
-          most = e;
+        if (e > max && passes(o, radii[n], x, y))
+          max = e;
       }
-  return most + 4.0 / ACROSS;
+  return max + 4.0 / ACROSS;
 }
 
 void vl_optics_find_pupils(vlOptics *o) {

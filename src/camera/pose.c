@@ -92,10 +92,10 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
         a[13], a[14], a[15]);
   /* Returns the volume spanned by the three normalised axes; it is 0 if they are coplanar. */
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
-  double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
-  if (most > 1e30)
-    return vl_fail_argument(
-        error, "camera: world_from_camera stretches by %g; 1e30 is the most", most);
+  double volume = 0.0, max = fmax(largest(x), fmax(largest(y), largest(z)));
+  if (max > 1e30)
+    return vl_fail_argument(error,
+                            "camera: world_from_camera stretches by %g; 1e30 is the most", max);
   if (largest(x) > 0.0 && largest(y) > 0.0 && largest(z) > 0.0)
     volume = fabs(dot(normalized(x), cross(normalized(y), normalized(z))));
   if (!(volume > parallel_sine))

@@ -157,7 +157,7 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
 static vlResult focal_length(const vlVanishingDef *def, const double p[2], double *f,
                              vlError *error) {
   const uint32_t pairs = def->count == 3 ? 3 : 1;
-  double f2 = 0.0, least = INFINITY; /* of the three equal values, the one with the smallest
+  double f2 = 0.0, min = INFINITY; /* of the three equal values, the one with the smallest
                                         terms has the least rounding error */
   for (uint32_t i = 0; i < pairs; i++) {
     const double *a = def->points[i], *b = def->points[(i + 1) % def->count];
@@ -168,9 +168,9 @@ static vlResult focal_length(const vlVanishingDef *def, const double p[2], doubl
           "vanishing points: seen from the principal point (%.9g, %.9g), numbers %u and %u "
           "are less than 90 degrees apart; directions at right angles are not",
           p[0], p[1], i + 1, (i + 1) % def->count + 1);
-    if (fabs(x) + fabs(y) >= least)
+    if (fabs(x) + fabs(y) >= min)
       continue;
-    least = fabs(x) + fabs(y);
+    min = fabs(x) + fabs(y);
     f2 = -(x + y);
   }
   *f = sqrt(f2);

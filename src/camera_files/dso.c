@@ -36,7 +36,7 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
   double v[8] = {0.0}, sides[2] = {0.0};
   vl_camera_next_line(&lines);
   const vlLensName *model = model_of(lines.text, &numbers);
-  VL_TRY(vl_camera_line_numbers(file, &lines, numbers, v, 4 + model->least, 4 + model->most));
+  VL_TRY(vl_camera_line_numbers(file, &lines, numbers, v, 4 + model->min, 4 + model->max));
   const double *k = v + 4;
   if (!vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "dso: the image's size is missing");

@@ -83,16 +83,16 @@ vlResult vl_camera_read_lens(const vlCameraFile *file, const json_t *object,
   const char *name = vl_camera_text(object, name_key);
   const bool perspective = def->projection == VL_PROJECTION_PERSPECTIVE;
   double k[14] = {0.0};
-  uint32_t n = 0, least = names->least, most = names->most;
+  uint32_t n = 0, min = names->min, max = names->max;
   if (vl_text_is(name, "none"))
     return VL_OK;
   for (const vlLensName *lens = names; lens->name; lens++) {
-    least = lens->least < least ? lens->least : least;
-    most = lens->most > most ? lens->most : most;
+    min = lens->min < min ? lens->min : min;
+    max = lens->max > max ? lens->max : max;
   }
-  VL_TRY(vl_camera_numbers(file, object, list_key, k, least, most, &n));
+  VL_TRY(vl_camera_numbers(file, object, list_key, k, min, max, &n));
   for (; names->name; names++) {
-    if (!vl_text_is(name, names->name) || n < names->least || n > names->most)
+    if (!vl_text_is(name, names->name) || n < names->min || n > names->max)
       continue;
     if (!perspective && names->family != VL_LENS_OPENCV)
       continue;
@@ -305,8 +305,8 @@ const char *vl_camera_name_without(const vlFittedCamera *fit, const char *withou
 
 vlResult vl_camera_write_form(const vlCameraFormat *format, const vlFittedCamera *fit,
                               vlCameraText *text) {
-  const uint32_t least = format->lenses.least;
-  const uint32_t count = fit->count > least ? fit->count : least;
+  const uint32_t min = format->lenses.min;
+  const uint32_t count = fit->count > min ? fit->count : min;
   return VL_PUT_FORM(text, fit, format->form, VL_VALUES("k", fit->k, count),
                      VL_WORD("lens", format->lens_words[fit->family]));
 }

@@ -21,10 +21,10 @@ typedef struct vlCameraField {
   { .key = name, .values = pointer, .optional = true }
 #define VL_FIELD_LIST(name, pointer, length) \
   { .key = name, .values = pointer, .count = length }
-#define VL_FIELD_LIST_OPTIONAL(name, pointer, most, number)                           \
-  {                                                                                   \
-    .key = name, .values = pointer, .count = most, .optional = true, .shorter = true, \
-    .found = number                                                                   \
+#define VL_FIELD_LIST_OPTIONAL(name, pointer, max, number)                           \
+  {                                                                                  \
+    .key = name, .values = pointer, .count = max, .optional = true, .shorter = true, \
+    .found = number                                                                  \
   }
 #define VL_FIELD_LIST_IF_THERE(name, pointer, length) \
   { .key = name, .values = pointer, .count = length, .optional = true }
@@ -57,7 +57,7 @@ const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list,
 typedef struct vlLensName {
   const char *name; /* null ends a list */
   vlLensFamily family;
-  uint32_t least, most;
+  uint32_t min, max;
 } vlLensName;
 /* Reads a lens: its name at name_key, which may be "none", and its coefficients at list_key.
  * The message about another name or number says that it is no known `what`; known: "there are

@@ -123,23 +123,23 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
 /* The same if the key exists; otherwise like vl_camera_size_beside without images. */
 vlResult vl_camera_size_pair(const vlCameraFile *file, const json_t *object, const char *key,
                              vlCameraRecord *record);
-/* Reads between `least` and `most` numbers from a list, a list of lists, or FileStorage's
+/* Reads between `min` and `max` numbers from a list, a list of lists, or FileStorage's
  * {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
-                           double *values, uint32_t least, uint32_t most, uint32_t *count);
+                           double *values, uint32_t min, uint32_t max, uint32_t *count);
 /* The same of a value of the file, which messages call by the key. */
 vlResult vl_camera_numbers_of(const vlCameraFile *file, const json_t *object, const char *key,
-                              const json_t *field, double *values, uint32_t least,
-                              uint32_t most, uint32_t *count);
+                              const json_t *field, double *values, uint32_t min, uint32_t max,
+                              uint32_t *count);
 /* The same for exactly `count` numbers. */
 vlResult vl_camera_list(const vlCameraFile *file, const json_t *object, const char *key,
                         double *values, uint32_t count);
 /* Parses the next number of a text, after blanks and commas. If there is no number, *end is
  * text. */
 double vl_camera_parse(const char *text, char **end);
-/* Parses the numbers of a text, `most` at most. Returns their count; most + 1: there are more,
+/* Parses the numbers of a text, `max` at most. Returns their count; max + 1: there are more,
  * one is not finite, or the text holds something else. */
-uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t most);
+uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t max);
 /* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
 /* The row of a table with this name, which is the row's first member and may be null where it
@@ -225,8 +225,8 @@ typedef enum vlLensFamily {
 /* The lenses that a dialect can hold. */
 typedef struct vlLensSet {
   uint32_t families; /* a bit for each (1 << VL_LENS_FOV) */
-  uint32_t least;    /* $k of a form has at least so many coefficients */
-  uint32_t most;     /* how many coefficients there may be */
+  uint32_t min;      /* $k of a form has at least so many coefficients */
+  uint32_t max;      /* how many coefficients there may be */
   uint32_t terms;    /* only so many of OpenCV's may differ from 0; 0: any */
 } vlLensSet;
 enum {

@@ -194,7 +194,7 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record,
     fit->count = 1;
   }
   const vlLensSet *lenses = &format->lenses;
-  const bool known = lenses->families >> fit->family & 1 && fit->count <= lenses->most;
+  const bool known = lenses->families >> fit->family & 1 && fit->count <= lenses->max;
   const bool fits = fit->family == VL_LENS_FISHEYE || !lenses->terms ||
                     vl_camera_all_zero(fit->k + lenses->terms, 14 - lenses->terms);
   if (!format->plain && lenses->families && !(known && fits))

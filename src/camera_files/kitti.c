@@ -16,7 +16,7 @@ typedef struct {
 } Row;
 
 static vlResult find_row(const vlCameraFile *file, const char *text, size_t size, Row *row,
-                         uint32_t least, bool *found) {
+                         uint32_t min, bool *found) {
   row->line = (vlCameraLines){.at = text, .end = text + size};
   *found = false;
   size_t length = strlen(row->key);
@@ -25,8 +25,7 @@ static vlResult find_row(const vlCameraFile *file, const char *text, size_t size
     if (strncmp(line, row->key, length) != 0 || (line[length] != ':' && line[length] != ' '))
       continue;
     *found = true;
-    return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, least,
-                                  least);
+    return vl_camera_line_numbers(file, &row->line, line + length + 1, row->values, min, min);
   }
   return VL_OK;
 }

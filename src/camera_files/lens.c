@@ -108,7 +108,7 @@ bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world)
 }
 
 vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord *record) {
-  const double *m = record->camera.world_from_camera, most = 0.05; /* of rounded numbers */
+  const double *m = record->camera.world_from_camera, max = 0.05; /* of rounded numbers */
   double dot[3][3];
   bool unit = true, right = true;
   if (!record->camera.has_matrix || !vl_mat4_is_finite(vl_mat4_load(m)))
@@ -116,8 +116,8 @@ vlResult vl_camera_check_rotation(const vlCameraFile *file, const vlCameraRecord
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       dot[i][j] = vl_dot_columns(m, i, j);
-      unit = unit && (i != j || fabs(dot[i][i] - 1.0) <= most);
-      right = right && (i == j || fabs(dot[i][j]) <= most);
+      unit = unit && (i != j || fabs(dot[i][i] - 1.0) <= max);
+      right = right && (i == j || fabs(dot[i][j]) <= max);
     }
   if (!unit)
     return vl_camera_wrong(file,

@@ -37,8 +37,7 @@ vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lin
 }
 
 vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines,
-                                const char *from, double *values, uint32_t least,
-                                uint32_t most) {
+                                const char *from, double *values, uint32_t min, uint32_t max) {
   uint32_t found = 0;
   const char *at = from + strspn(from, " \t");
   while (*at) {
@@ -47,13 +46,13 @@ vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *l
     if (end == at || !isfinite(value))
       return vl_camera_wrong_line(file, lines, at, "no finite number: \"%s\"",
                                   vl_short_text(at).text);
-    if (found == most)
-      return vl_camera_wrong_line(file, lines, at, "more than %u numbers", most);
+    if (found == max)
+      return vl_camera_wrong_line(file, lines, at, "more than %u numbers", max);
     values[found++] = value;
     at = end + strspn(end, " \t");
   }
-  if (found < least)
-    return vl_camera_wrong_line(file, lines, from, "%u numbers; it must be %u", found, least);
+  if (found < min)
+    return vl_camera_wrong_line(file, lines, from, "%u numbers; it must be %u", found, min);
   return VL_OK;
 }
 

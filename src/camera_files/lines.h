@@ -18,8 +18,7 @@ vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lin
                               const char *at, const char *format, ...) VL_PRINTF(4, 5);
 /* Parses finite numbers up to the end of the line. Any other text is an error at its column. */
 vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines,
-                                const char *from, double *values, uint32_t least,
-                                uint32_t most);
+                                const char *from, double *values, uint32_t min, uint32_t max);
 
 /* Lines whose blanks and comments have a meaning. The text is writable; each line of it becomes
  * a text of its own. */

@@ -26,17 +26,17 @@ bool vl_numpy_open(const char *text, size_t size, vlNumpyArray *array) {
                           .bytes = type[12] == '8' ? 8 : 4,
                           .whole = type[11] == 'i',
                           .by_columns = strstr(header, "'fortran_order': True") != NULL};
-  const size_t most = (size - start - length) / array->bytes;
+  const size_t max = (size - start - length) / array->bytes;
   for (char *at = (char *)shape + 10, *end; *at != ')'; at = end + strspn(end, ", ")) {
     const unsigned long side = strtoul(at, &end, 10);
-    if (end == at || side < 1 || side > most / array->count)
+    if (end == at || side < 1 || side > max / array->count)
       return false;
     if (array->dimensions < 2)
       array->sides[array->dimensions] = side;
     array->dimensions++;
     array->count *= side;
   }
-  return most > 0 && !(array->by_columns && array->dimensions > 2);
+  return max > 0 && !(array->by_columns && array->dimensions > 2);
 }
 
 double vl_numpy_at(const vlNumpyArray *array, size_t index) {

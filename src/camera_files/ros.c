@@ -36,14 +36,14 @@ typedef struct {
   vlCameraLines lines;
 } Ini;
 
-/* Reads between `least` and `most` numbers from the next lines. The line after the last number
+/* Reads between `min` and `max` numbers from the next lines. The line after the last number
  * stays unread. */
-static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least,
-                            uint32_t most, uint32_t *count) {
+static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t min,
+                            uint32_t max, uint32_t *count) {
   uint32_t line = ini->lines.number;
   bool more = true;
   *count = 0;
-  while (more && *count < most) {
+  while (more && *count < max) {
     vlCameraLines ahead = ini->lines;
     if (!vl_camera_next_line(&ahead))
       break;
@@ -58,8 +58,8 @@ static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t 
         more = false; /* the next key */
         break;
       }
-      if (*count == most)
-        return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", most);
+      if (*count == max)
+        return vl_camera_wrong_line(ini->file, &ahead, at, "more than %u numbers", max);
       if (!isfinite(value))
         return vl_camera_wrong_line(ini->file, &ahead, at, "a number is not finite");
       values[(*count)++] = value;
@@ -68,10 +68,10 @@ static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t 
     if (more)
       ini->lines = ahead;
   }
-  if (*count >= least)
+  if (*count >= min)
     return VL_OK;
   return vl_camera_wrong_at(ini->file, line, 1, "ros: \"%s\" holds %u numbers; it must hold %u",
-                            key, *count, least);
+                            key, *count, min);
 }
 
 /* Every section except [image] and [externals] is a camera. */

@@ -171,19 +171,19 @@ double vl_camera_parse(const char *text, char **end) {
   return value;
 }
 
-uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t most) {
-  for (uint32_t count = 0; count <= most; count++) {
+uint32_t vl_camera_parse_all(const char *text, double *values, uint32_t max) {
+  for (uint32_t count = 0; count <= max; count++) {
     char *end;
     const double value = vl_camera_parse(text, &end);
     if (end == text)
-      return text[strspn(text, " \t\r\n,;")] ? most + 1 : count;
+      return text[strspn(text, " \t\r\n,;")] ? max + 1 : count;
     if (!isfinite(value))
       break;
-    if (count < most)
+    if (count < max)
       values[count] = value;
     text = end;
   }
-  return most + 1;
+  return max + 1;
 }
 
 /* Reads a number at object[key], or in a list of lists there. */
@@ -260,15 +260,15 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
 
 /* Appends the numbers of a list; nested lists to a depth of two. */
 static vlResult collect(const vlCameraFile *file, const json_t *list, const char *key,
-                        int depth, double *values, uint32_t most, uint32_t *count) {
+                        int depth, double *values, uint32_t max, uint32_t *count) {
   json_t *item;
   VL_EACH(item, list) {
     if (json_is_array(item) && depth > 0) {
-      VL_TRY(collect(file, item, key, depth - 1, values, most, count));
+      VL_TRY(collect(file, item, key, depth - 1, values, max, count));
     } else {
-      if (*count == most)
+      if (*count == max)
         return vl_camera_wrong_in(file, list, NULL, "%s: \"%s\" holds more than %u numbers",
-                                  file->dialect, key, most);
+                                  file->dialect, key, max);
       VL_TRY(number_of(file, list, item, key, &values[*count]));
       ++*count;
     }
@@ -277,15 +277,15 @@ static vlResult collect(const vlCameraFile *file, const json_t *list, const char
 }
 
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key,
-                           double *values, uint32_t least, uint32_t most, uint32_t *count) {
+                           double *values, uint32_t min, uint32_t max, uint32_t *count) {
   const json_t *field;
   VL_TRY(vl_camera_field(file, object, key, &field));
-  return vl_camera_numbers_of(file, object, key, field, values, least, most, count);
+  return vl_camera_numbers_of(file, object, key, field, values, min, max, count);
 }
 
 vlResult vl_camera_numbers_of(const vlCameraFile *file, const json_t *object, const char *key,
-                              const json_t *field, double *values, uint32_t least,
-                              uint32_t most, uint32_t *count) {
+                              const json_t *field, double *values, uint32_t min, uint32_t max,
+                              uint32_t *count) {
   uint32_t found = 0;
   double rows = VL_UNSET, columns = VL_UNSET;
   if (json_is_object(field)) {
@@ -296,10 +296,10 @@ vlResult vl_camera_numbers_of(const vlCameraFile *file, const json_t *object, co
   if (!json_is_array(field))
     return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be a list of numbers",
                               file->dialect, key);
-  VL_TRY(collect(file, field, key, 1, values, most, &found));
-  if (found < least)
+  VL_TRY(collect(file, field, key, 1, values, max, &found));
+  if (found < min)
     return vl_camera_wrong_in(file, object, key, "%s: \"%s\" holds %u numbers; it must hold %u",
-                              file->dialect, key, found, least);
+                              file->dialect, key, found, min);
   if (!vl_is_unset(rows) && rows * columns != found)
     return vl_camera_wrong_in(file, object, key, "%s: \"%s\" says %g x %g and holds %u numbers",
                               file->dialect, key, rows, columns, found);

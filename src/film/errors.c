@@ -26,7 +26,7 @@
 #include "base/error.h"
 #include "film/sums.h"
 
-enum { CELL = 8, LEAST_SAMPLES = 8 };
+enum { CELL = 8, MIN_SAMPLES = 8 };
 static const double ALIKE = 4;
 
 typedef struct Pixel {
@@ -80,7 +80,7 @@ static double pixel_factor(const Pixel *p, const Pixel *cell, uint32_t count, bo
     parts += alike ? q->parts : 0;
   }
   double r = parts / sum;
-  return apart || p->samples < LEAST_SAMPLES ? r : variance_of_ratio(r, p->samples, p->share);
+  return apart || p->samples < MIN_SAMPLES ? r : variance_of_ratio(r, p->samples, p->share);
 }
 
 /* Whether the parts of a block's samples are from independent sequences. */

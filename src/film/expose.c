@@ -46,15 +46,15 @@ static void values_from_rgb(const vlFilm *film, const float *xyz_from_sensor, fl
     m[i] = (float)back[i];
 }
 
-/* Scales colours whose largest component exceeds `most` (pbrt's maxcomponentvalue). Components
+/* Scales colours whose largest component exceeds `max` (pbrt's maxcomponentvalue). Components
  * are the sensor's values, which m computes from r, g, b. */
-static void limit(const float m[9], float most, uint32_t n, float *r, float *g, float *b) {
+static void limit(const float m[9], float max, uint32_t n, float *r, float *g, float *b) {
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     float x = m[0] * r[i] + m[1] * g[i] + m[2] * b[i],
           y = m[3] * r[i] + m[4] * g[i] + m[5] * b[i];
     float z = m[6] * r[i] + m[7] * g[i] + m[8] * b[i], top = x > y ? x : y;
     top = top > z ? top : z;
-    float f = top > most ? most / top : 1.0f;
+    float f = top > max ? max / top : 1.0f;
     r[i] *= f;
     g[i] *= f;
     b[i] *= f;

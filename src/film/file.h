@@ -51,7 +51,7 @@ static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
          def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
 }
 /* The most bytes of a block's data, in files of all formats. */
-static inline size_t vl_film_most_data(const vlFilmDef *def) {
+static inline size_t vl_film_max_data(const vlFilmDef *def) {
   return (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * (vl_film_pixel_size(def) + VL_FILM_OLD_MEAN);
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
@@ -108,7 +108,7 @@ void vl_film_reader_close(vlFilmReader *reader);
 /* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
 /* Reads and checks the data of that block: pixels (row by row), then moments, then spectra.
- * data: of vl_film_most_data bytes. */
+ * data: of vl_film_max_data bytes. */
 vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
@@ -135,7 +135,7 @@ void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t t
 size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixels,
                              bool compared);
 /* Brings a block's data of format 1 or 2 into the present form, in place; data has room for
- * vl_film_most_data bytes. */
+ * vl_film_max_data bytes. */
 void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data);
 
 /* ---- locks ------------------------------------------------------------------------------- */

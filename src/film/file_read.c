@@ -13,7 +13,7 @@ typedef struct Extent {
   /* even: all pixels of the crop have the samples of `range`; joined: all have a single range
    * with the same first */
   bool any, even, joined;
-  uint64_t pixels, least;
+  uint64_t pixels, min;
 } Extent;
 
 static void add_block(Extent *e, const vlFilmReader *r) {
@@ -27,14 +27,14 @@ static void add_block(Extent *e, const vlFilmReader *r) {
                   .any = true,
                   .even = h->range_count == 1,
                   .joined = true,
-                  .least = samples};
+                  .min = samples};
   e->joined = e->joined && h->range_count == 1 && r->ranges[0].first == e->range.first;
   e->even = e->even && e->joined && r->ranges[0].end == e->range.end;
   e->crop[0] = h->x0 < e->crop[0] ? h->x0 : e->crop[0];
   e->crop[1] = h->y0 < e->crop[1] ? h->y0 : e->crop[1];
   e->crop[2] = h->x1 > e->crop[2] ? h->x1 : e->crop[2];
   e->crop[3] = h->y1 > e->crop[3] ? h->y1 : e->crop[3];
-  e->least = samples < e->least ? samples : e->least;
+  e->min = samples < e->min ? samples : e->min;
   e->pixels += (uint64_t)(h->x1 - h->x0) * (h->y1 - h->y0);
 }
 
@@ -54,7 +54,7 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
   uint64_t area = (uint64_t)(e->crop[2] - e->crop[0]) * (e->crop[3] - e->crop[1]);
   if (e->pixels != area) {
     e->even = e->joined = false;
-    e->least = 0;
+    e->min = 0;
   }
   if (partial || e->joined)
     return VL_OK;
@@ -79,7 +79,7 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
         vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.weights[0]);
     good = film->spectrum.sums[0] && film->spectrum.weights[0];
   }
-  char *data = good ? vl_alloc(film->context, vl_film_most_data(&film->def)) : NULL;
+  char *data = good ? vl_alloc(film->context, vl_film_max_data(&film->def)) : NULL;
   vlResult result = data ? VL_OK : vl_fail_memory(error);
   while (result == VL_OK && r->next < r->blocks) {
     result = vl_film_reader_next(r, error);
@@ -133,7 +133,7 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     result = fill(&reader, made, blocks_differ, error);
   if (result == VL_OK) {
     if (!blocks_differ)
-      vl_film_set_spp(made, (uint32_t)extent.least);
+      vl_film_set_spp(made, (uint32_t)extent.min);
     vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first,
                                                 !extent.joined, reader.shape.own});
   } else {

@@ -195,8 +195,8 @@ vlResult vl_film_reader_crc(vlFilmReader *r, uint32_t *crc, vlError *error) {
 /* ---- values ------------------------------------------------------------------------------ */
 
 static bool within(vlInt128 value, uint64_t samples, int bits) {
-  vlInt128 most = (vlInt128)samples << bits;
-  return value >= -most && value <= most;
+  vlInt128 max = (vlInt128)samples << bits;
+  return value >= -max && value <= max;
 }
 
 /* Whether sums are possible for this number of samples. If they are, no addition to them can

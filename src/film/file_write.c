@@ -106,7 +106,7 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
   uint32_t count = vl_film_block_count(run->window),
            threads = vl_context_threads(writer->context);
   run->buffer_size = sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) +
-                     vl_film_most_data(&run->film->def);
+                     vl_film_max_data(&run->film->def);
   run->buffer_size = (run->buffer_size + 63) & ~(size_t)63;
   run->offsets = vl_alloc_array(writer->context, count, sizeof *run->offsets);
   run->buffers = vl_alloc_array(writer->context, threads, run->buffer_size);

@@ -39,7 +39,7 @@ typedef struct Block {
  * e^2. */
 static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
 /* Samples; the mean of fewer than 8 says little about the distribution of more. */
-enum { LEAST_FOR_RATIO = 12 };
+enum { MIN_FOR_RATIO = 12 };
 
 typedef struct Display {
   vlView view;
@@ -209,7 +209,7 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
   Mean square = block_square(&b, &d, correlation);
   double each = upper_limit(square),
          together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
-  if (vl_film_block_spp(film, block) >= LEAST_FOR_RATIO) {
+  if (vl_film_block_spp(film, block) >= MIN_FOR_RATIO) {
     size_t first =
         (size_t)(block_window[1] - crop[1]) * film->width + (block_window[0] - crop[0]);
     ratio = square_ratio(film, first, &b, &d, correlation, square);

@@ -140,9 +140,9 @@ static int find_lobes(Shape s, double radius, Lobe *lobes) {
              after = vl_filter_value(s.filter, s.axis, x + step);
       bool same = before * sign > 0.0 && after * sign > 0.0,
            dip = fabs(f) < fabs(before) && fabs(f) <= fabs(after);
-      double least = same && dip ? find_least(s, x - step, x + step) : -1.0;
-      if (least > 0.0 && magnitude(s, least) < 1e-6 * top)
-        cut = least;
+      double min = same && dip ? find_least(s, x - step, x + step) : -1.0;
+      if (min > 0.0 && magnitude(s, min) < 1e-6 * top)
+        cut = min;
     }
     if (fabs(f) >= 1e-12 * top)
       last = x;
@@ -184,7 +184,7 @@ static void add_segment(Shape s, vlFilterAxis *axis, const Lobe *lobe, double m0
 }
 
 static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *axis) {
-  enum { BINS = 512, TAIL_BINS = 32, LEAST_BINS = 64 };
+  enum { BINS = 512, TAIL_BINS = 32, MIN_BINS = 64 };
   double radius = which ? filter->radius_y : filter->radius_x;
   memset(axis, 0, sizeof *axis);
   axis->radius = (float)radius;
@@ -210,7 +210,7 @@ static bool compile_axis(const vlPixelFilter *filter, int which, vlFilterAxis *a
   for (int i = 0; i < count; i++) {
     double mass = lobes[i].sum[STEPS], weight = lobes[i].sign * ratio;
     uint32_t bins = (uint32_t)(BINS * mass / total);
-    bins = bins < LEAST_BINS ? LEAST_BINS : bins;
+    bins = bins < MIN_BINS ? MIN_BINS : bins;
     if (!(mass > 1e-9 * total)) { /* nothing to sample */
       before += mass;
       continue;

@@ -37,14 +37,14 @@ static void sample_table(const vlFilterAxis *axis, uint32_t n, const float *u, f
   }
   for (uint32_t k = 1; k < axis->segments; k++) {
     float from = axis->start[k], bins = axis->scale[k], sign = axis->sign[k];
-    int32_t first = axis->base[k], most = axis->last[k];
+    int32_t first = axis->base[k], max = axis->last[k];
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < n; i++) {
       int in = vl_abs(2.0f * u[i] - 1.0f) >= from;
       start[i] = in ? from : start[i];
       scale[i] = in ? bins : scale[i];
       base[i] = in ? first : base[i];
-      last[i] = in ? most : last[i];
+      last[i] = in ? max : last[i];
       w[i] = in ? sign : w[i];
     }
   }

@@ -64,10 +64,10 @@ vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t heigh
 }
 
 vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image) {
-  if (file->most_pixels && (uint64_t)def->width * def->height > file->most_pixels)
+  if (file->max_pixels && (uint64_t)def->width * def->height > file->max_pixels)
     return vl_fail(file->error, VL_ERROR_SCENE,
                    "%s: %ux%u pixels, more than the %llu that a texture may have", file->name,
-                   def->width, def->height, (unsigned long long)file->most_pixels);
+                   def->width, def->height, (unsigned long long)file->max_pixels);
   vlResult result = vl_image_create_parts(file->context, def, !file->header, image);
   if (result == VL_ERROR_MEMORY)
     return vl_fail(file->error, result, "out of memory: %s has %ux%u pixels of %zu bytes",
@@ -159,7 +159,7 @@ vlResult vl_image_decode(vlContext *context, vlTask *task, const char *name, con
                       .size = size,
                       .error = error,
                       .task = task,
-                      .most_pixels = vl_context_max_texture_pixels(context)};
+                      .max_pixels = vl_context_max_texture_pixels(context)};
   return read_memory(&file, image);
 }
 

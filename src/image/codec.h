@@ -20,8 +20,8 @@ typedef struct vlImageFile {
   /* names of the channels to read; null: all. Used by OpenEXR only */
   const char *const *wanted;
   uint32_t wanted_count;
-  uint64_t most_pixels; /* limit of the image's size; 0: none */
-  vlTask *task;         /* of the load or the build that reads the file; null: none */
+  uint64_t max_pixels; /* limit of the image's size; 0: none */
+  vlTask *task;        /* of the load or the build that reads the file; null: none */
   vlImage **header; /* not null: only the header is read; vl_codec_create stores an image here
                        and stops the reader */
 } vlImageFile;

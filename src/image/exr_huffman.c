@@ -5,7 +5,7 @@
 
 #include "base/bytes.h"
 
-enum { SYMBOLS = 65537, LONGEST = 58 };
+enum { SYMBOLS = 65537, MAX_LENGTH = 58 };
 
 typedef struct Bits {
   const uint8_t *data;
@@ -22,9 +22,9 @@ static uint32_t take(Bits *b, uint32_t n) {
 
 typedef struct Decoder {
   uint8_t length[SYMBOLS];
-  uint32_t symbols[SYMBOLS];    /* sorted by length, then by value */
-  uint64_t lowest[LONGEST + 1]; /* lowest code of each length */
-  uint32_t count[LONGEST + 1], first[LONGEST + 1];
+  uint32_t symbols[SYMBOLS];       /* sorted by length, then by value */
+  uint64_t lowest[MAX_LENGTH + 1]; /* lowest code of each length */
+  uint32_t count[MAX_LENGTH + 1], first[MAX_LENGTH + 1];
 } Decoder;
 
 /* Reads the lengths of the symbols in ascending order, six bits each. 59 to 62 stand for 2 to 5
@@ -34,7 +34,7 @@ static bool read_lengths(Decoder *d, Bits *b, uint32_t low, uint32_t high) {
     if (b->at >= b->end)
       return false;
     uint32_t l = take(b, 6);
-    if (l <= LONGEST) {
+    if (l <= MAX_LENGTH) {
       d->length[i++] = (uint8_t)l;
       continue;
     }
@@ -50,12 +50,12 @@ static void make_codes(Decoder *d) {
   for (uint32_t i = 0; i < SYMBOLS; i++)
     d->count[d->length[i]]++;
   uint64_t code = 0;
-  for (int l = LONGEST; l > 0; l--) {
+  for (int l = MAX_LENGTH; l > 0; l--) {
     d->lowest[l] = code;
     code = (code + d->count[l]) >> 1;
   }
-  uint32_t next[LONGEST + 1], at = 0;
-  for (int l = 1; l <= LONGEST; l++) {
+  uint32_t next[MAX_LENGTH + 1], at = 0;
+  for (int l = 1; l <= MAX_LENGTH; l++) {
     d->first[l] = next[l] = at;
     at += d->count[l];
   }
@@ -66,7 +66,7 @@ static void make_codes(Decoder *d) {
 
 static bool next_symbol(const Decoder *d, Bits *b, uint32_t *symbol) {
   uint64_t code = 0;
-  for (int l = 1; l <= LONGEST; l++) {
+  for (int l = 1; l <= MAX_LENGTH; l++) {
     if (b->at >= b->end)
       return false;
     code = code << 1 | take(b, 1);

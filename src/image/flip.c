@@ -221,11 +221,11 @@ static void combine(const Flip *f, float *flip) {
   const float qc = 0.7f, pc = 0.4f, pt = 0.95f;
   Vec green = hunt_lab_of_xyz(xyz_of_rgb((Vec){0.0f, 1.0f, 0.0f})),
       blue = hunt_lab_of_xyz(xyz_of_rgb((Vec){0.0f, 0.0f, 1.0f}));
-  float most = vl_pow(hyab(green, blue), qc), knee = pc * most;
+  float max = vl_pow(hyab(green, blue), qc), knee = pc * max;
   size_t count = (size_t)f->width * f->height;
   for (size_t n = 0; n < count; n++) {
     float d = vl_pow(hyab(filtered_lab(f, 0, n), filtered_lab(f, 1, n)), qc);
-    d = d < knee ? d * (pt / knee) : pt + (d - knee) / (most - knee) * (1.0f - pt);
+    d = d < knee ? d * (pt / knee) : pt + (d - knee) / (max - knee) * (1.0f - pt);
     d = vl_clamp01(d);
     float feature = vl_clamp01(__builtin_sqrtf(f->feature[0][n] * 0.707106781186547524f));
     /* d = 0 gives 0, except when the feature difference is 1 */

@@ -78,10 +78,10 @@ static bool put(const Gif *g, vlImage *image, size_t index, uint32_t color) {
 }
 
 static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
-  uint32_t least = g->file->data[g->at++];
-  if (least < 1 || least > 8)
+  uint32_t min = g->file->data[g->at++];
+  if (min < 1 || min > 8)
     return vl_codec_broken(g->file, "its code size is not possible");
-  uint32_t clear = 1u << least, end = clear + 1, next = end + 1, size = least + 1, old = CODES,
+  uint32_t clear = 1u << min, end = clear + 1, next = end + 1, size = min + 1, old = CODES,
            code;
   for (uint32_t i = 0; i < clear; i++)
     z->first[i] = z->last[i] = (uint8_t)i;
@@ -91,7 +91,7 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
       return vl_codec_broken(g->file, "ends too early");
     if (code == clear) {
       next = end + 1;
-      size = least + 1;
+      size = min + 1;
       old = CODES;
       continue;
     }

@@ -3,14 +3,14 @@
 
 bool vl_far_origin(const vlExtent *box, double origin[3]) {
   const double far = 100;
-  double size = 0, most = 0, middle[3];
+  double size = 0, max = 0, middle[3];
   vl_extent_middle(box, middle);
   for (int i = 0; i < 3; i++) {
     size = fmax(size, vl_extent_size(box, i));
-    most = fmax(most, fabs(middle[i]));
+    max = fmax(max, fabs(middle[i]));
     origin[i] = floor(middle[i] + 0.5);
   }
-  if (size > 0 && most >= VL_FAR_LEAST && most > far * size && isfinite(most + size))
+  if (size > 0 && max >= VL_MIN_FAR && max > far * size && isfinite(max + size))
     return true;
   origin[0] = origin[1] = origin[2] = 0;
   return false;

@@ -8,7 +8,7 @@
 #include "velo/shape.h"
 
 /* Coordinates below this lose nothing that is seen. */
-static const double VL_FAR_LEAST = 1000;
+static const double VL_MIN_FAR = 1000;
 
 /* The point about which vertices in a box are stored: whole numbers near its middle, or 0 on
  * all axes: the box is not far from the origin, compared with its size. Returns whether it is

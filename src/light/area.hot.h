@@ -48,8 +48,8 @@ static inline int vl_triangle_cap_near(float solid_angle) {
   /* Outside these limits, sampling is by area. Below the lower limit, both densities are nearly
    * the same. Above the upper limit (6.22, as in pbrt), the triangle covers nearly a hemisphere
    * (2 pi = 6.283) and the spherical triangle degenerates. */
-  const float smallest_cap = 1e-3f, largest_cap = 6.22f;
-  return (solid_angle > smallest_cap) & (solid_angle < largest_cap);
+  const float min_cap = 1e-3f, max_cap = 6.22f;
+  return (solid_angle > min_cap) & (solid_angle < max_cap);
 }
 
 /* Intersection of the direction w with the triangle's plane, in barycentric coordinates. */

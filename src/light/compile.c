@@ -100,8 +100,8 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels, vlColorSpace space)
   float xyz[9];
   vl_xyz_from_rgb(space, xyz);
   float y = xyz[3] * t.c[0] + xyz[4] * t.c[1] + xyz[5] * t.c[2];
-  float least = 0.01f * vl_max(t.c[0], vl_max(t.c[1], t.c[2]));
-  return y < least ? least : y;
+  float min = 0.01f * vl_max(t.c[0], vl_max(t.c[1], t.c[2]));
+  return y < min ? min : y;
 }
 
 /* ---- all lights ------------------------------------------------------------------------- */

@@ -105,15 +105,15 @@ static double image_area(const vlStretch *stretch, double x, double y) {
 static double image_cone(const vlStretch *stretch, const float axis[3], const float half[2]) {
   if (!stretch->is_skewed)
     return 1 / sqrt(1 + half[0] * half[0] + half[1] * half[1]);
-  double least = 1;
+  double min = 1;
   for (int i = 0; i < 4; i++) {
     double to[3], along = 0;
     image_direction(stretch, i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], to);
     for (int k = 0; k < 3; k++)
       along += to[k] * axis[k];
-    least = fmin(least, along / vl_norm3(to));
+    min = fmin(min, along / vl_norm3(to));
   }
-  return least > 0 ? least : -1;
+  return min > 0 ? min : -1;
 }
 
 static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMipmap *mip,

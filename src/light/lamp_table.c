@@ -238,9 +238,9 @@ static void fill(vlLampTable *t, const vlLampData *data, const Axis *azimuth,
 
 vlResult vl_lamp_table_make(vlLamp *lamp, const vlLampData *data, vlError *error) {
   vlContext *c = lamp->context;
-  uint32_t most = data->planes > data->angles ? data->planes : data->angles;
+  uint32_t max = data->planes > data->angles ? data->planes : data->angles;
   Axis azimuth = {0}, polar = {0};
-  bool whole = axis_allocate(c, &azimuth, most) && axis_allocate(c, &polar, most);
+  bool whole = axis_allocate(c, &azimuth, max) && axis_allocate(c, &polar, max);
   if (whole && data->type == 'C') {
     axis_around(data, &azimuth);
     for (uint32_t j = 0; j < data->angles; j++)

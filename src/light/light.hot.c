@@ -288,12 +288,12 @@ void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, con
                      const float *u_choice, const float *v, const float *spare,
                      vlLightSamples *out) {
   static SampleGroup *const sample_group[] = {vl_sample_triangles, vl_sample_spheres};
-  const float least_pmf = 1.0f / 256.0f; /* leaves 16 of the 24 bits */
+  const float min_pmf = 1.0f / 256.0f; /* leaves 16 of the 24 bits */
   float u[VL_ROW_SIZE];
   vlLanesByLight chosen;
   vl_stage_light_choice(&world->tree, n, f, u_choice, out, u, &chosen);
   for (uint32_t i = 0; i < n; i++)
-    u[i] = out->pmf[i] < least_pmf ? spare[i] : u[i];
+    u[i] = out->pmf[i] < min_pmf ? spare[i] : u[i];
   uint32_t skies[VL_ROW_SIZE], sky_count = 0;
   Group groups[2] = {{.count = 0}, {.count = 0}}; /* triangles, spheres */
   for (uint32_t i = 0; i < n; i++) {

@@ -16,7 +16,7 @@
 #include "velo/light.h"
 
 enum { MAX_CELLS = 1024 };
-static const double least_share = 0.02; /* share of the mean light that every cell gets */
+static const double min_share = 0.02; /* share of the mean light that every cell gets */
 
 static vlVec3 side(const float from[3], const float to[3], float *length) {
   vlVec3 d = vl_vec3(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
@@ -47,7 +47,7 @@ static float seen(const vlEnvironment *env, const vlMipmap *mip, vlVec3 d) {
 }
 
 /* Smallest and largest number of sample points of a cell along each axis. */
-enum { COARSEST = 2, FINEST = 4 };
+enum { MIN_FINE = 2, MAX_FINE = 4 };
 
 typedef struct Filling {
   const vlEnvironment *env;
@@ -113,7 +113,7 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
   memset(portal->sums, 0, (size_t)(n + 1) * (n + 1) * sizeof(double));
   uint32_t fine = (mip->levels[0].width + n - 1) / n;
   Filling filling = {.env = env, .mip = mip, .portal = portal};
-  filling.fine = fine < COARSEST ? COARSEST : fine < FINEST ? fine : FINEST;
+  filling.fine = fine < MIN_FINE ? MIN_FINE : fine < MAX_FINE ? fine : MAX_FINE;
   double total, passes;
   if (!fill(world->context, &filling, &total, &passes))
     return vl_fail_memory(error);
@@ -131,7 +131,7 @@ vlResult vl_world_add_portal(vlWorld *world, const vlLightDef *def, vlEnvironmen
     double row = 0;
     for (uint32_t i = 0; i < n; i++) {
       double *at = portal->sums + (size_t)(j + 1) * (n + 1) + i + 1;
-      row += *at + least_share * mean * vl_portal_solid_angle(tangents[i], tangents[j]) /
+      row += *at + min_share * mean * vl_portal_solid_angle(tangents[i], tangents[j]) /
                        ((double)n * n);
       *at = row + at[-(ptrdiff_t)(n + 1)];
     }

@@ -117,12 +117,12 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
     beta[c] = from.weight[c] * radiance_scale;
   vlVec3 w = from.w;
   for (uint32_t depth = 0; depth < l->depth; depth++) {
-    float most = vl_largest_of4(beta);
-    if (depth > 3 && most < 0.25f) {
-      if (!(next(state) < most))
+    float max = vl_largest_of4(beta);
+    if (depth > 3 && max < 0.25f) {
+      if (!(next(state) < max))
         return;
       for (int c = 0; c < 4; c++)
-        beta[c] *= 1.0f / most;
+        beta[c] *= 1.0f / max;
     }
     if (l->scatters) {
       if (fly(l, &w, &height, &to, wi, beta, state, f))

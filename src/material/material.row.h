@@ -17,7 +17,7 @@
 #define TEXTURE(...) VL_PARAMETER(TEXTURE, vlMaterialDef, __VA_ARGS__)
 #define BLOCK(...) VL_PARAMETER(BLOCK, vlMaterialDef, __VA_ARGS__)
 
-#define CLAMPED(least, most) VL_RANGE(least, most), .flags = VL_PARAMETER_CLAMPED
+#define CLAMPED(min, max) VL_RANGE(min, max), .flags = VL_PARAMETER_CLAMPED
 #define ALBEDO CLAMPED(0, 1), .role = VL_PARAMETER_ALBEDO
 #define UNBOUNDED VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED
 #define SHARE CLAMPED(0, 1)

@@ -224,11 +224,11 @@ static void sheen_at_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBs
     float alpha = s->row[VL_P_SHEEN_ALPHA][i];
     float raw = vl_albedo_at(t->sheen, vl_albedo_cell(alpha, VL_ALBEDO_ALPHA),
                              vl_albedo_cell(c, VL_ALBEDO_COS));
-    float most = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
+    float max = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
     vlVec3 h = vl_normalize(vl_vec3(wo.x[i] + wi.x[i], wo.y[i] + wi.y[i], l->z[i] + c));
     l->sheen_i[i] = fuzz * vl_min(raw, 1.0f);
     l->sheen_value[i] =
-        l->z[i] > 0.0f && z[i] > 0.0f ? vl_sheen(l->z[i], z[i], h.z, alpha) / most : 0.0f;
+        l->z[i] > 0.0f && z[i] > 0.0f ? vl_sheen(l->z[i], z[i], h.z, alpha) / max : 0.0f;
   }
 }
 

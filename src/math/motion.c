@@ -23,10 +23,10 @@ static Mat3 inverse_transpose(const Mat3 *a) {
 }
 
 static double largest(const Mat3 *a) {
-  double most = 0;
+  double max = 0;
   for (int i = 0; i < 9; i++)
-    most = fmax(most, fabs(a->m[i]));
-  return most;
+    max = fmax(max, fabs(a->m[i]));
+  return max;
 }
 
 /* The nearest rotation (a reflection if the matrix mirrors), by averaging with the inverse

@@ -148,11 +148,11 @@ bool vl_mat4_points(const vlMat4 *a, size_t count, const float *from, float *to)
  * rounding becomes 1, and so do lengths whose square a float cannot hold. */
 static void vertex_normal(const vlMat4 *inverse, double scale, const float n[3],
                           float result[3]) {
-  const double rounding = 1e-4, most = 1e12;
+  const double rounding = 1e-4, max = 1e12;
   double given[3] = {(double)n[0], (double)n[1], (double)n[2]}, q[3];
   vl_mat4_normal(inverse, given, q);
   double length = vl_norm3(q), weight = length * scale;
-  if (fabs(weight - 1) <= rounding || !(weight >= 1 / most && weight <= most))
+  if (fabs(weight - 1) <= rounding || !(weight >= 1 / max && weight <= max))
     weight = 1;
   double factor = length > 0 ? weight / length : 0;
   for (int k = 0; k < 3; k++)

@@ -64,7 +64,7 @@ static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const ui
                          bool rgb) {
   const uint32_t n[3] = {g->nx, g->ny, g->nz};
   uint32_t a[3], b[3];
-  float most = 0;
+  float max = 0;
   for (int i = 0; i < 3; i++)
     reach((double)at[i] / cells[i], (double)(at[i] + 1) / cells[i], n[i], &a[i], &b[i]);
   for (uint32_t z = a[2]; z <= b[2]; z++)
@@ -81,9 +81,9 @@ static float dense_bound(const vlDenseGrid *g, const uint32_t cells[3], const ui
                            v[3] * vl_sigmoid((vlSigmoid){v[0], v[1], v[2]}, (float)l) * 1.001f);
         else if (rgb)
           bound = vl_max(v[0], vl_max(v[1], v[2]));
-        most = vl_max(most, bound);
+        max = vl_max(max, bound);
       }
-  return most;
+  return max;
 }
 
 typedef struct Bounding {

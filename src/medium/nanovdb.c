@@ -51,15 +51,15 @@ static void raise_brick(const vlWorldMedium *m, float *majorants,
                         const int32_t corner[3]) {
   for (int part = 0; part < 8; part++) {
     int x0 = part & 1 ? 4 : 0, y0 = part & 2 ? 4 : 0, z0 = part & 4 ? 4 : 0;
-    float most = 0;
+    float max = 0;
     for (int z = z0; z < z0 + 4; z++)
       for (int y = y0; y < y0 + 4; y++)
         for (int x = x0; x < x0 + 4; x++)
-          most = vl_max(most, values[(z * 8 + y) * 8 + x]);
+          max = vl_max(max, values[(z * 8 + y) * 8 + x]);
     int32_t a[3] = {corner[0] + x0, corner[1] + y0, corner[2] + z0},
             b[3] = {a[0] + 3, a[1] + 3, a[2] + 3};
-    if (most > 0)
-      raise(m, majorants, medium_from_index, a, b, most);
+    if (max > 0)
+      raise(m, majorants, medium_from_index, a, b, max);
   }
 }
 

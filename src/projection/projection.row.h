@@ -17,9 +17,8 @@
 #define UNSET_OR_ABOVE_0 VL_FROM(0), .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW
 #define POSITIVE(name, member, ...) \
   PARAMETER(DOUBLE, name, member, __VA_ARGS__, UNSET_OR_ABOVE_0)
-#define WITHIN(least, most, name, member, ...)                        \
-  PARAMETER(DOUBLE, name, member, __VA_ARGS__, VL_RANGE(least, most), \
-            .flags = VL_PARAMETER_UNSET)
+#define WITHIN(min, max, name, member, ...) \
+  PARAMETER(DOUBLE, name, member, __VA_ARGS__, VL_RANGE(min, max), .flags = VL_PARAMETER_UNSET)
 #define ANGLE .unit = "degrees", .factor = DEGREES
 #define TILT                            \
   ANGLE, VL_RANGE(-0.5 * PI, 0.5 * PI), \

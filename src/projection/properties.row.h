@@ -23,8 +23,8 @@ enum {
 /* The range, default and names of one number of vlCameraDef.shape. */
 typedef struct vlShapeNumber {
   const char *name;
-  double least, most; /* inclusive range; outside it the equations are undefined or imprecise */
-  double standard;    /* default value; VL_UNSET if the number is required */
+  double min, max; /* inclusive range; outside it the equations are undefined or imprecise */
+  double standard; /* default value; VL_UNSET if the number is required */
 } vlShapeNumber;
 
 typedef struct vlProjectionRow {

@@ -138,25 +138,25 @@ uint32_t vl_adaptive_rows(const vlAdaptive *a) {
 }
 
 bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *count) {
-  uint32_t least = total, end = total;
+  uint32_t min = total, end = total;
   for (uint32_t i = 0; i < a->blocks; i++)
-    if (!is_done(a, i) && vl_film_block_spp(a->film, i) < least)
-      least = vl_film_block_spp(a->film, i);
+    if (!is_done(a, i) && vl_film_block_spp(a->film, i) < min)
+      min = vl_film_block_spp(a->film, i);
   a->in_pass = 0;
   for (uint32_t i = 0; i < a->blocks; i++) {
     uint32_t spp = vl_film_block_spp(a->film, i);
-    a->pass[i] = !is_done(a, i) && spp == least && spp < total;
+    a->pass[i] = !is_done(a, i) && spp == min && spp < total;
     a->in_pass += a->pass[i];
     if (a->pass[i] && a->end[i] < end)
       end = a->end[i];
-    if (!is_done(a, i) && spp > least && spp < end)
+    if (!is_done(a, i) && spp > min && spp < end)
       end = spp;
   }
-  if (a->noise > 0 && next_comparison(least) < end)
-    end = next_comparison(least);
+  if (a->noise > 0 && next_comparison(min) < end)
+    end = next_comparison(min);
   keep_rows(a);
-  *first = least;
-  *count = end - least;
+  *first = min;
+  *count = end - min;
   return a->in_pass > 0;
 }
 

@@ -218,9 +218,9 @@ static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedB
                      VL_SHARED_LANES);
     float color[4] = {row(w, RED)[i], row(w, GREEN)[i], row(w, BLUE)[i], row(w, ALPHA)[i]};
     int32_t x = rows.px[i] - b->x0, y = rows.py[i] - b->y0;
-    float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))),
+    float max = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))),
           sum = color[0] + color[1] + color[2];
-    bool good = most < 0x1p39f && sum == sum && color[3] - color[3] == 0.0f;
+    bool good = max < 0x1p39f && sum == sum && color[3] - color[3] == 0.0f;
     bool own = x >= 0 && y >= 0 && (uint32_t)x < b->width && (uint32_t)y < b->height;
     if (!good && own && w->not_finite++ == 0) {
       w->bad_x = rows.px[i];
@@ -371,9 +371,9 @@ uint32_t vl_render_block_count(const vlRenderRun *r) {
          ((r->tiles_y + r->span_y - 1) / r->span_y);
 }
 
-/* Halves blocks until there are `least`, but no side below `side` tiles. */
-static void divide_blocks(vlRenderRun *r, uint32_t least, uint32_t side) {
-  while (vl_render_block_count(r) < least && (r->span_x > side || r->span_y > side)) {
+/* Halves blocks until there are `min`, but no side below `side` tiles. */
+static void divide_blocks(vlRenderRun *r, uint32_t min, uint32_t side) {
+  while (vl_render_block_count(r) < min && (r->span_x > side || r->span_y > side)) {
     if (r->span_y > side && r->span_y >= r->span_x)
       r->span_y /= 2;
     else
@@ -410,9 +410,9 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
   vlSharedBlock b;
   bool some = r->shares && shared_block(r, block, &b);
   for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->stop.stopped);) {
-    uint32_t most =
+    uint32_t max =
         r->shares ? VL_SHARED_SAMPLES : VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y);
-    uint32_t count = end - s < most ? end - s : most;
+    uint32_t count = end - s < max ? end - s : max;
     if (!r->shares) {
       uint32_t n = list_samples(r, w, block, s, count);
       if (n)

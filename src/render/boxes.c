@@ -135,7 +135,7 @@ static void put_box(void *user, uint32_t index, VL_UNUSED uint32_t worker) {
  * points in all. */
 static void look_at_groups(Pass *p) {
   const vlWorld *world = p->channels.world;
-  const uint64_t most = 1 << 26;
+  const uint64_t max = 1 << 26;
   uint64_t points = 0;
   for (size_t g = 1; g < world->groups.count; g++)
     for (uint32_t i = 0; i < world->groups.items[g].count; i++)
@@ -144,10 +144,10 @@ static void look_at_groups(Pass *p) {
     if (!atomic_load(&p->counts[1][id].all.count))
       continue;
     const vlWorldGroup *group = &world->groups.items[world->instances.items[id].group];
-    for (uint32_t i = 0; i < group->count && points <= most; i++)
+    for (uint32_t i = 0; i < group->count && points <= max; i++)
       points += vl_box_points(&world->shapes.items[group->shapes[i]]);
   }
-  p->corners = points > most;
+  p->corners = points > max;
 }
 
 vlBoxesDef vl_default_boxes_def(uint32_t width, uint32_t height) {

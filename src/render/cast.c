@@ -56,7 +56,7 @@ static Fate fate_of(const vlCastBatch *b, const double *time, uint32_t i) {
   double sum =
       unsound(b->o, i) + unsound(b->d, i) + (b->start[i] - b->start[i]) + (time[i] - time[i]);
   double length = largest(b->d, i);
-  if (sum != 0 || b->end[i] != b->end[i] || length > VL_CAST_LONGEST)
+  if (sum != 0 || b->end[i] != b->end[i] || length > VL_MAX_CAST_LENGTH)
     return NOT_FINITE;
   if (length == 0)
     return ZERO_DIRECTION;

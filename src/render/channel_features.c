@@ -17,7 +17,7 @@ static float instant(uint32_t s) {
   return u;
 }
 
-static uint32_t least(uint32_t a, uint32_t b) {
+static uint32_t min(uint32_t a, uint32_t b) {
   return a < b ? a : b;
 }
 
@@ -38,8 +38,8 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, vlFeatureRegion *
   if (tile % p->tiles_x % p->feature_tiles || tile / p->tiles_x % p->feature_tiles ||
       g->x0 >= crop[2] || g->y0 >= crop[3])
     return false;
-  g->width = least(x + side, crop[2]) - g->x0;
-  g->height = least(y + side, crop[3]) - g->y0;
+  g->width = min(x + side, crop[2]) - g->x0;
+  g->height = min(y + side, crop[3]) - g->y0;
   for (int k = 0; k < 2 && p->shares; k++)
     g->border[k] = p->reconstruction.border[k];
   g->stride = g->width + 2 * g->border[0];
@@ -105,7 +105,7 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
  * cost; but at least FEW, and at most VL_FEATURE_SAMPLES. */
 static uint32_t samples_of(uint32_t spp) {
   enum { FEW = 8 };
-  return spp <= FEW ? spp : spp <= 2 * FEW ? FEW : least(spp / 2, VL_FEATURE_SAMPLES);
+  return spp <= FEW ? spp : spp <= 2 * FEW ? FEW : min(spp / 2, VL_FEATURE_SAMPLES);
 }
 
 /* ---- points ------------------------------------------------------------------------------ */
@@ -177,7 +177,7 @@ static void trace_sample(const vlChannelPass *p, vlChannelWorker *w, const vlFea
   for (uint32_t i = 0; i < VL_BATCH; i++)
     w->batch->time[i] = vl_world_time(p->world, seconds);
   for (uint32_t done = 0, n; done < points; done += n) {
-    n = least(points - done, VL_BATCH);
+    n = min(points - done, VL_BATCH);
     make_rays(w, &rays, g, done, n, s);
     p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
     keep(p, w, n, done);

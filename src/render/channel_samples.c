@@ -282,9 +282,9 @@ static void add_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, con
  * single pixel. */
 static void count_square(const vlChannelPass *p, vlChannelWorker *w, Count *c, Square *q) {
   const uint32_t *crop = p->def->crop;
-  uint32_t most = VL_SHARED_HITS / (q->width * q->height);
+  uint32_t max = VL_SHARED_HITS / (q->width * q->height);
   for (q->first = 0; q->first < c->spp; q->first += q->count) {
-    q->count = c->spp - q->first < most ? c->spp - q->first : most;
+    q->count = c->spp - q->first < max ? c->spp - q->first : max;
     trace_square(p, w, c, q);
     for (uint32_t k = 0; k < q->side * q->side; k++) {
       uint32_t x = (uint32_t)q->x0 + k % q->side, y = (uint32_t)q->y0 + k / q->side;

@@ -23,13 +23,13 @@
 #include "velo/tracer.h"
 
 enum {
-  LEAST_SAMPLES = 8, /* per pixel of a coarse image */
+  MIN_SAMPLES = 8, /* per pixel of a coarse image */
   MAX_SAMPLES = 32,
-  LEAST_PIXELS = 192, /* of a coarse image; with fewer there is no race */
-  MANY_PIXELS = 700,  /* with more, samples are added instead of pixels */
-  BLOCK = 4,          /* side of the blocks that are compared with merging, pixels */
-  AROUND = 2,         /* neighbours that say how bright a pixel is: pixels on each side */
-  QUARTER = 4,        /* pixels per light path */
+  MIN_PIXELS = 192,  /* of a coarse image; with fewer there is no race */
+  MANY_PIXELS = 700, /* with more, samples are added instead of pixels */
+  BLOCK = 4,         /* side of the blocks that are compared with merging, pixels */
+  AROUND = 2,        /* neighbours that say how bright a pixel is: pixels on each side */
+  QUARTER = 4,       /* pixels per light path */
   MAX_LIGHT_PATHS = 1 << 20,
   FEW_FACES = 4096,
   TAIL_PATHS = 4 /* light paths per pixel and sample for the tail: few of those from the sun
@@ -88,7 +88,7 @@ typedef struct Race {
   size_t pixels;
   double *base;   /* by pixel and channel: what a relative error is relative to */
   double *sorted; /* room for 3 numbers per pixel, to be sorted */
-  double least;   /* added to base^2, so that black pixels do not count too much */
+  double min;     /* added to base^2, so that black pixels do not count too much */
 } Race;
 
 /* ---- the size of the race ---------------------------------------------------------------- */
@@ -119,11 +119,11 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
   for (uint32_t i = 0; i < race->count; i++)
     each += 2 * rows[i].path;
   const double samples = fmin(SHARE * pixels * race->def.spp, MAX_PATHS) / each;
-  double wanted = samples / LEAST_SAMPLES; /* pixels of a coarse image */
-  race->def.spp = LEAST_SAMPLES;
+  double wanted = samples / MIN_SAMPLES; /* pixels of a coarse image */
+  race->def.spp = MIN_SAMPLES;
   for (; wanted > MANY_PIXELS && race->def.spp < MAX_SAMPLES; wanted /= 2)
     race->def.spp *= 2;
-  if (wanted < LEAST_PIXELS)
+  if (wanted < MIN_PIXELS)
     return false;
   race->factor = 1;
   while (race->factor < VL_MAX_COARSE &&
@@ -250,7 +250,7 @@ static void find_base(Race *race, uint32_t count) {
     race->sorted[i] = race->base[i];
   }
   double mean = trimmed_mean(race->sorted, n, 0, n / 50); /* without lamps and fireflies */
-  race->least = 0.1 * mean * mean;
+  race->min = 0.1 * mean * mean;
 }
 
 /* The squared relative differences of trial t by pixel, in race->sorted. */
@@ -261,18 +261,18 @@ static void find_errors(Race *race, uint32_t t) {
       double base = race->base[3 * i + c];
       double apart =
           value_at(race, race->images[t][0], i, c) - value_at(race, race->images[t][1], i, c);
-      sum += apart * apart / (6 * (base * base + race->least));
+      sum += apart * apart / (6 * (base * base + race->min));
     }
     race->sorted[i] = sum;
   }
 }
 
-/* As the trimmed relMSE of a pair of seeds in bench/error.c; no pixel counts more than `most`.
+/* As the trimmed relMSE of a pair of seeds in bench/error.c; no pixel counts more than `max`.
  */
-static double error_of(Race *race, uint32_t t, double most) {
+static double error_of(Race *race, uint32_t t, double max) {
   find_errors(race, t);
   for (size_t i = 0; i < race->pixels; i++)
-    race->sorted[i] = fmin(race->sorted[i], most);
+    race->sorted[i] = fmin(race->sorted[i], max);
   return trimmed_mean(race->sorted, race->pixels, 0, (race->pixels + 999) / 1000);
 }
 
@@ -282,7 +282,7 @@ static vlResult find_tail(Race *race, double *tail, vlError *error) {
   vlTails tails = {race->film.width,
                    race->film.height,
                    race->base,
-                   race->least,
+                   race->min,
                    RARE * (double)race->def.spp,
                    (double)race->film.max_component};
   vlPilot pilot = {.pass_seed = tail_seed, .tails = &tails};
@@ -320,8 +320,8 @@ static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x
       }
     }
     const double both = 0.5 * (mean[1][0] + mean[1][1]);
-    sum += (mean[1][0] - mean[0][0]) * (mean[1][1] - mean[0][1]) /
-           (3 * (both * both + race->least));
+    sum +=
+        (mean[1][0] - mean[0][0]) * (mean[1][1] - mean[0][1]) / (3 * (both * both + race->min));
   }
   return sum;
 }
@@ -367,12 +367,12 @@ void vl_choose_by_work(vlTracerChoice *choice, double samples) {
         (trials[i].error * trials[i].cost / trials[0].cost / samples + trials[i].missing) /
         (trials[0].error / samples + trials[0].missing);
   for (uint32_t i = 1; i < choice->count; i++) {
-    double most = isfinite(trials[best].work) ? trials[best].work : INFINITY;
+    double max = isfinite(trials[best].work) ? trials[best].work : INFINITY;
     if (trials[i].tracer == VL_TRACER_MERGING)
-      most *= BIASED;
+      max *= BIASED;
     else if (best == 0)
-      most *= SURE;
-    if (trials[i].work < most)
+      max *= SURE;
+    if (trials[i].work < max)
       best = i;
   }
   choice->tracer = trials[best].tracer;

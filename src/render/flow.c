@@ -17,7 +17,7 @@
 /* A hit hides the point if it is nearer by more than this tolerance, relative to the size of
  * the numbers. Rays are rounded to float (2^-23), and their hit distance moves by 1 / cosine of
  * that. */
-static const double TOLERANCE = 0x1p-19, LEAST_COSINE = 0.01;
+static const double TOLERANCE = 0x1p-19, MIN_COSINE = 0.01;
 
 typedef struct Target {
   bool sky;
@@ -137,7 +137,7 @@ static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t 
     cosine += t->normal[k] * other->d[k][i];
   }
   double size = end + vl_norm3(o) + vl_norm3(t->point);
-  return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
+  return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), MIN_COSINE);
 }
 
 static vlHidden judge(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t lane,

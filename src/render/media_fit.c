@@ -16,7 +16,7 @@ enum { SIDE = 32, DEPTH = 8, ROWS = 22 };
  * light, such as the ground from below. Media also differ if paths leave the world in another
  * medium than that around the sky: nothing arrives through it, but light paths start there. */
 static const double LITTLE = 0.0002, MANY = 0.1;
-enum { FEWEST_WRONG = 3 };
+enum { MIN_WRONG = 3 };
 _Static_assert(SIDE *SIDE == VL_BATCH, "one batch");
 
 /* Rays through the image's middle of the shutter's time. Returns their number. */
@@ -109,9 +109,9 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room,
         after += radiance - (double)room->fit.before[c][i];
     }
   }
-  if (room->fit.endless >= FEWEST_WRONG)
+  if (room->fit.endless >= MIN_WRONG)
     return true;
-  return wrong >= FEWEST_WRONG && (after > LITTLE * all || wrong > MANY * n);
+  return wrong >= MIN_WRONG && (after > LITTLE * all || wrong > MANY * n);
 }
 
 vlResult vl_media_differ(const vlWorld *world, const vlCamera *camera, bool *differ) {

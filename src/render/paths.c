@@ -44,12 +44,12 @@ static vlResult make_memory(Call *c, vlError *error) {
   c->lanes = 1u << 14;
   c->lanes = c->lanes / depth < 1 ? 1 : c->lanes / depth > 256 ? 256 : c->lanes / depth;
   vlPathRecorder *r = &c->recorder;
-  r->most_vertices = 2 * depth;
-  r->most_contributions = depth * (4 + skies);
+  r->max_vertices = 2 * depth;
+  r->max_contributions = depth * (4 + skies);
   r->paths = vl_alloc_zero(c->context, c->lanes, sizeof *r->paths);
   r->vertices =
-      vl_alloc_array(c->context, (size_t)c->lanes * r->most_vertices, sizeof *r->vertices);
-  r->contributions = vl_alloc_array(c->context, (size_t)c->lanes * r->most_contributions,
+      vl_alloc_array(c->context, (size_t)c->lanes * r->max_vertices, sizeof *r->vertices);
+  r->contributions = vl_alloc_array(c->context, (size_t)c->lanes * r->max_contributions,
                                     sizeof *r->contributions);
   c->worker.scratch =
       vl_alloc_zero(c->context, 1, vl_whole_lines(vl_trace_scratch_size(c->run.world)));
@@ -189,7 +189,7 @@ static vlResult keep(Call *c, uint32_t n, vlError *error) {
     if (c->run.shares && !(weight_of(c, i) > 0.0f))
       continue;
     vlPath *path = &c->paths[c->path_count];
-    vlPathContribution *lights = r->contributions + (size_t)i * r->most_contributions;
+    vlPathContribution *lights = r->contributions + (size_t)i * r->max_contributions;
     *path = r->paths[i];
     fill_path(c, i, path);
     expose(c, path, lights);
@@ -204,7 +204,7 @@ static vlResult keep(Call *c, uint32_t n, vlError *error) {
       c->contributions = all;
     if (!vertices || !all)
       return vl_fail_memory(error);
-    memcpy(vertices + c->vertex_count, r->vertices + (size_t)i * r->most_vertices,
+    memcpy(vertices + c->vertex_count, r->vertices + (size_t)i * r->max_vertices,
            path->vertex_count * sizeof *vertices);
     memcpy(all + c->contribution_count, lights, path->contribution_count * sizeof *all);
     c->vertex_count += path->vertex_count;
@@ -237,9 +237,9 @@ static vlResult trace_all(Call *c, uint32_t first, uint32_t count, vlError *erro
 /* ---- the result -------------------------------------------------------------------------- */
 
 static bool is_finite(const vlPath *path) {
-  const float most = 0x1p40f; /* as in film.h */
+  const float max = 0x1p40f; /* as in film.h */
   for (int k = 0; k < 3; k++)
-    if (!(fabsf(path->rgb[k]) <= most))
+    if (!(fabsf(path->rgb[k]) <= max))
       return false;
   return true;
 }

@@ -266,18 +266,17 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   r->tiles_y = (r->crop[3] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_y0;
 }
 
-/* The number of samples of the next pass, at most `most`. Passes have 1, 1, 2, 4, ... samples,
+/* The number of samples of the next pass, at most `max`. Passes have 1, 1, 2, 4, ... samples,
  * so that a first image exists early. The first pass of a call has one sample, since the time
  * of a sample is not known yet. A pass takes at most PASS_SECONDS, since its work is lost when
  * it is abandoned, and at most half of the remaining time. The split into passes does not
  * change the image. */
-static uint32_t pass_size(uint32_t done, uint32_t most, double seconds_per_sample,
-                          double left) {
+static uint32_t pass_size(uint32_t done, uint32_t max, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : 1;
   if (fit < size)
     size = fit > 1 ? (uint32_t)fit : 1;
-  return size < most ? size : most;
+  return size < max ? size : max;
 }
 
 static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
@@ -314,15 +313,15 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
 /* Chooses the blocks and the samples of the next pass. False: there is none. */
 static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
   uint32_t total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0, first,
-           most;
-  bool any = vl_adaptive_next(&r->adaptive, total, &first, &most);
+           max;
+  bool any = vl_adaptive_next(&r->adaptive, total, &first, &max);
   r->work_done = vl_adaptive_mean_spp(&r->adaptive);
   r->work_total = vl_adaptive_expected_spp(&r->adaptive, total);
   if (!any)
     return false;
   double share = (double)r->adaptive.in_pass / r->adaptive.blocks;
   r->first_sample = r->sequence.first + first;
-  r->pass_samples = r->two_way ? 1 : pass_size(first, most, share * seconds_per_work, left);
+  r->pass_samples = r->two_way ? 1 : pass_size(first, max, share * seconds_per_work, left);
   r->work_pass = share * r->pass_samples;
   return true;
 }

@@ -38,9 +38,9 @@ static Taps find_taps(const vlSplats *s, int axis, float at) {
 
 /* Adds one color. */
 static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
-  float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2])));
+  float max = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2])));
   float sum = color[0] + color[1] + color[2];
-  if (!(most < 0x1p35f && sum == sum))
+  if (!(max < 0x1p35f && sum == sum))
     return false;
   Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
   double value[2 * VL_MAX_FILTER_RADIUS + 1];

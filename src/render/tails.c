@@ -19,9 +19,9 @@ static double measure(const vlTails *t, float x, float y, double odds, const dou
   double largest = 0, squared = 0, both = 0, grows = (1 + odds) / odds;
   for (int c = 0; c < 3; c++)
     largest = fmax(largest, fabs(color[c]) * grows);
-  double limit = largest > t->most ? t->most / largest : 1;
+  double limit = largest > t->max ? t->max / largest : 1;
   for (int c = 0; c < 3; c++) {
-    double sample = color[c] * grows * limit, part = 1 / (3 * (base[c] * base[c] + t->least));
+    double sample = color[c] * grows * limit, part = 1 / (3 * (base[c] * base[c] + t->min));
     squared += sample * sample * part;
     both += color[c] * (1 + odds) * limit * sample * part;
   }

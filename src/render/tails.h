@@ -18,9 +18,9 @@
 typedef struct vlTails {
   uint32_t width, height; /* of the film */
   const double *base;     /* by pixel and channel: what a relative error is relative to */
-  double least;           /* added to base^2 */
+  double min;             /* added to base^2 */
   double rare; /* samples that are less bright than this, relative to base, do not count */
-  double most; /* largest component of a sample (vlFilmDef.max_component) */
+  double max;  /* largest component of a sample (vlFilmDef.max_component) */
 } vlTails;
 
 /* The squared relative error, as a variance per sample and the mean of three channels, that

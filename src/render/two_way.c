@@ -57,7 +57,7 @@ struct vlTwoWayRun {
   uint32_t *medium;       /* by light: vlTwoWay.medium */
   vlSplats splats;
   float exposure, first_radius;
-  uint32_t most_paths, paths, index;
+  uint32_t max_paths, paths, index;
   const vlTails *tails;    /* null: a render */
   uint32_t pass_seed;      /* of what all paths of a pass share */
   uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of
@@ -367,7 +367,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
   vlTwoWay *way = &run->way;
   run->index = index;
   run->stop = stop;
-  run->paths = run->most_paths;
+  run->paths = run->max_paths;
   if (way->merge)
     way->shared = shared_number(run->pass_seed, index);
   if (way->connect > 0.0f)
@@ -443,7 +443,7 @@ static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   vlLightVertices *inner = &run->way.inner;
   if ((world->moves && run->trace.same_wavelengths) || run->trace.max_depth < 2)
     return VL_OK;
-  uint32_t paths = run->most_paths < MAX_INNER ? run->most_paths : MAX_INNER,
+  uint32_t paths = run->max_paths < MAX_INNER ? run->max_paths : MAX_INNER,
            groups = paths / GROUP_PATHS;
   bool alike = world->def.color == VL_COLOR_RGB && !world->moves;
   groups = groups < 1 || alike ? 1 : groups < VL_MAX_GROUPS ? groups : VL_MAX_GROUPS;
@@ -497,12 +497,12 @@ static void set_light_paths(vlTwoWayRun *run, const vlRenderDef *def,
   const vlFilmDef *f = run->film_def;
   const uint64_t pixels = (uint64_t)f->width * f->height;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
-  run->most_paths = def->light_paths;
+  run->max_paths = def->light_paths;
   if (def->light_paths == VL_AS_MANY_AS_PIXELS)
-    run->most_paths = pixels < MAX_PATHS ? (uint32_t)pixels : MAX_PATHS;
-  run->paths = run->most_paths;
+    run->max_paths = pixels < MAX_PATHS ? (uint32_t)pixels : MAX_PATHS;
+  run->paths = run->max_paths;
   run->rounds =
-      run->most_paths > run->pixels ? (run->most_paths + run->pixels - 1) / run->pixels : 1;
+      run->max_paths > run->pixels ? (run->max_paths + run->pixels - 1) / run->pixels : 1;
   const uint64_t samples = (uint64_t)sampler->spp * run->rounds;
   vl_sampler_init(&run->way.sampler, def->sampler, vl_hash2(def->seed, light_seed), f->width,
                   f->height, samples < UINT32_MAX ? (uint32_t)samples : UINT32_MAX);
@@ -537,8 +537,8 @@ static vlResult make_run(vlTwoWayRun *run, const vlWorld *world, const vlCamera 
     return vl_fail_memory(error);
   VL_TRY(make_workers(run, error));
   VL_TRY(find_media(run, camera, error));
-  run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
-  if (run->most_paths == 0)
+  run->starts = vl_two_way_choice(world, run->choice) && run->max_paths > 0;
+  if (run->max_paths == 0)
     memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts)
     vl_camera_view(camera, run->film_def, &way->eye);

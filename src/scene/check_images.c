@@ -62,12 +62,12 @@ static float spectrum_max(const vlSpectrum *s) {
   }
   if (s->kind == VL_SPECTRUM_CONSTANT)
     return s->scale * s->value;
-  float dense[VL_LAMBDA_COUNT], most = 0;
+  float dense[VL_LAMBDA_COUNT], max = 0;
   if (vl_spectrum_dense(s, VL_ROLE_ALBEDO, dense, NULL) != VL_OK)
     return 0;
   for (int i = 0; i < VL_LAMBDA_COUNT; i++)
-    most = dense[i] > most ? dense[i] : most;
-  return most;
+    max = dense[i] > max ? dense[i] : max;
+  return max;
 }
 
 /* Smallest and largest linear colour value of an image. False: it has no colours, or memory is
@@ -223,7 +223,7 @@ static void mark_needed(vlCheck *c, uint8_t *needed) {
 static void check_albedo(vlCheck *c) {
   const vlScene *s = c->scene;
   /* largest value accepted; above 1 because scaled colours are rounded */
-  const float most = 1.001f;
+  const float max = 1.001f;
   uint8_t *needed = vl_alloc_zero(c->context, s->textures.count + 1, 1);
   float *known = vl_alloc_zero(c->context, s->textures.count + 1, sizeof *known);
   if (!needed || !known)
@@ -243,7 +243,7 @@ static void check_albedo(vlCheck *c) {
       float value = list[k].factor * (id ? known[id - 1] : spectrum_max(&list[k].input->value));
       if (m->kind == VL_MATERIAL_DIFFUSE_TRANSMISSION)
         sum += value;
-      if (!(value > most))
+      if (!(value > max))
         continue;
       if (id)
         vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING,
@@ -257,7 +257,7 @@ static void check_albedo(vlCheck *c) {
                      vl_check_material_name(m).text, list[k].what, (double)value);
       sum = 0;
     }
-    if (sum > most)
+    if (sum > max)
       vl_check_add(c, VL_FINDING_ALBEDO, VL_SEVERITY_WARNING, m->source,
                    "%s: reflectance and transmittance add up to %.4g: at most 1 is physical",
                    vl_check_material_name(m).text, (double)sum);

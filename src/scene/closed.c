@@ -186,9 +186,9 @@ static void add_flatness(void *user, const vlFace *face) {
   Flatness *f = user;
   if (face->shape != f->shape)
     return;
-  const double most = fmax(fabs(face->area[0]), fmax(fabs(face->area[1]), fabs(face->area[2])));
+  const double max = fmax(fabs(face->area[0]), fmax(fabs(face->area[1]), fabs(face->area[2])));
   f->area += face->size;
-  f->flat += most > along * face->size ? face->size : 0;
+  f->flat += max > along * face->size ? face->size : 0;
 }
 
 /* Whether the shell is one convex shape without flat walls: a sphere, a dome on a disk. */

@@ -39,12 +39,12 @@ void vl_extent_visit_box(const vlMat4 *m, const vlExtent *box, vlPointVisit *vis
   }
 }
 
-static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most,
+static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t max,
                         vlPointVisit *visit, void *user) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   if (world_from_group)
     m = vl_mat4_multiply(*world_from_group, m);
-  for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
+  for (size_t i = 0; d->centers && i < d->faces; i += d->faces / max + 1) {
     const vlExtent box = vl_extent_of_sphere(d, i);
     vl_extent_visit_box(&m, &box, visit, user);
   }
@@ -57,7 +57,7 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
       vl_extent_visit_box(&m, &box, visit, user);
     return;
   }
-  size_t step = d->vertices / most + 1;
+  size_t step = d->vertices / max + 1;
   for (size_t i = 0; i < d->vertices; i += step) {
     double p[3];
     vl_mat4_vertex(&m, d->positions + 3 * i, p);

@@ -105,7 +105,7 @@ vlBlocks vl_facing_blocks(const vlScene *scene, const vlExtent *box, int axis) {
 
 bool vl_facing_raised_is_behind(const vlScene *scene, const vlExtent *box,
                                 const double front[3]) {
-  const double least = 0.1, most = 0.8;
+  const double min = 0.1, max = 0.8;
   int axis = 0;
   while (axis < 2 && fabs(front[axis]) != 1)
     axis++;
@@ -113,5 +113,5 @@ bool vl_facing_raised_is_behind(const vlScene *scene, const vlExtent *box,
     return false;
   const vlBlocks blocks = vl_facing_blocks(scene, box, axis);
   const double ahead = blocks.ends[front[axis] > 0], behind = blocks.ends[front[axis] < 0];
-  return behind >= least * ahead && behind <= most * ahead;
+  return behind >= min * ahead && behind <= max * ahead;
 }

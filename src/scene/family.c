@@ -208,8 +208,8 @@ uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
   enum { MAX_IDS = VL_LENGTH(ids) };
   vlTextureId inputs[VL_SCENE_MAX_USES - MAX_IDS];
   const vlKindRow *row = vl_scene_def_row(family, def);
-  const uint32_t most = VL_SCENE_MAX_USES - MAX_IDS;
-  uint32_t count = row ? vl_row_textures(row, def, inputs, most) : 0;
+  const uint32_t max = VL_SCENE_MAX_USES - MAX_IDS;
+  uint32_t count = row ? vl_row_textures(row, def, inputs, max) : 0;
   for (uint32_t i = 0; i < count; i++)
     uses[i] = (vlSceneUse){VL_SCENE_TEXTURES, inputs[i].index};
   for (size_t i = 0; i < MAX_IDS; i++) {
@@ -226,8 +226,8 @@ uint32_t vl_scene_uses(vlSceneFamily family, const void *def,
 /* ---- what a def owns --------------------------------------------------------------------- */
 
 void vl_scene_own_block(vlSceneOwned *owned, const void *block) {
-  const int most = (int)(VL_LENGTH(owned->items));
-  if (block && owned->count < most)
+  const int max = (int)(VL_LENGTH(owned->items));
+  if (block && owned->count < max)
     owned->items[owned->count++] = block;
 }
 

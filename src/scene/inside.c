@@ -33,9 +33,9 @@ static void direction(uint32_t k, uint32_t n, double lowest, const double up[3],
   const double height = lowest + (1 - lowest) * (k + 0.5) / n, flat = sqrt(1 - height * height),
                turn = 2.399963229728653 * k + 0.3;
   double right[3], ahead[3] = {0, 0, 0};
-  int least = fabs(up[0]) < fabs(up[1]) ? 0 : 1;
-  least = fabs(up[2]) < fabs(up[least]) ? 2 : least;
-  ahead[least] = 1; /* not parallel to `up` */
+  int min = fabs(up[0]) < fabs(up[1]) ? 0 : 1;
+  min = fabs(up[2]) < fabs(up[min]) ? 2 : min;
+  ahead[min] = 1; /* not parallel to `up` */
   vl_cross3(ahead, up, right);
   vl_normalize3(right);
   vl_cross3(up, right, ahead);
@@ -72,7 +72,7 @@ static bool find_eye(const vlScene *scene, const vlExtent *box, double eye[3]) {
 
 /* The point near the middle with the most room around it. */
 static bool find_free_point(vlScene *scene, const vlExtent *box, const double up[3], Rays *r,
-                            double most, double best[3]) {
+                            double max, double best[3]) {
   double middle[3], room = -1;
   r->count = 0;
   vl_extent_middle(box, middle);
@@ -88,7 +88,7 @@ static bool find_free_point(vlScene *scene, const vlExtent *box, const double up
   for (int point = 0; point < POINTS; point++) {
     double sum = 0;
     for (int k = 0; k < AROUND; k++)
-      sum += fmin(r->reach[point * AROUND + k], most);
+      sum += fmin(r->reach[point * AROUND + k], max);
     if (sum > room)
       memcpy(best, r->from[point * AROUND], 3 * sizeof *best);
     room = fmax(room, sum);
@@ -97,7 +97,7 @@ static bool find_free_point(vlScene *scene, const vlExtent *box, const double up
 }
 
 /* Places the lamps around a point, each halfway to what its direction meets. */
-static bool place_lamps(vlScene *scene, const double center[3], const double up[3], double most,
+static bool place_lamps(vlScene *scene, const double center[3], const double up[3], double max,
                         Rays *r, double lamps[LAMPS][3]) {
   r->count = 0;
   for (uint32_t k = 0; k < LAMPS; k++) {
@@ -109,7 +109,7 @@ static bool place_lamps(vlScene *scene, const double center[3], const double up[
     return false;
   for (uint32_t k = 0; k < LAMPS; k++)
     for (int i = 0; i < 3; i++)
-      lamps[k][i] = center[i] + 0.5 * fmin(r->reach[k], most) * r->toward[k][i];
+      lamps[k][i] = center[i] + 0.5 * fmin(r->reach[k], max) * r->toward[k][i];
   return true;
 }
 
@@ -117,21 +117,21 @@ bool vl_scene_add_lamps(vlScene *scene, const vlExtent *boxes, const double up[3
                         float strength) {
   vlExtent box = vl_extent_nothing;
   vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box);
-  const double most = vl_extent_diagonal(&box);
+  const double max = vl_extent_diagonal(&box);
   double center[3], lamps[LAMPS][3];
-  if (!(most > 0) || !isfinite(most))
+  if (!(max > 0) || !isfinite(max))
     return true; /* there is nothing to light */
   Rays *r = vl_alloc(scene->context, sizeof *r);
   if (!r)
     return vl_scene_fail_memory(scene);
-  bool ok = find_eye(scene, &box, center) || find_free_point(scene, &box, up, r, most, center);
-  ok = ok && place_lamps(scene, center, up, most, r, lamps);
+  bool ok = find_eye(scene, &box, center) || find_free_point(scene, &box, up, r, max, center);
+  ok = ok && place_lamps(scene, center, up, max, r, lamps);
   r->count = 0;
   for (int k = 0; k < LAMPS && ok; k++)
     add_rays_around(r, lamps[k], up);
   ok = ok && cast(scene, r);
   for (int k = 0; k < LAMPS && ok; k++) {
-    double nearest = most;
+    double nearest = max;
     for (int i = 0; i < AROUND; i++)
       nearest = fmin(nearest, r->reach[k * AROUND + i]);
     vlLightDef light = vl_default_light_def(VL_LIGHT_POINT);

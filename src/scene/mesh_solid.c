@@ -110,20 +110,20 @@ static void add_faces(const vlShapeDef *d, vlMeshSolid *b, const uint32_t *welde
 }
 
 static bool gather(const vlScene *scene, const uint32_t *shapes, size_t count, vlMeshSolid *b) {
-  size_t vertices = 0, faces = 0, most = 0;
+  size_t vertices = 0, faces = 0, max = 0;
   for (size_t i = 0; i < count; i++) {
     const vlShapeDef *d = &scene->shapes.items[shapes[i]];
     if (!vl_shape_is_mesh(d->kind))
       continue;
     vertices += d->vertices;
     faces += (d->kind == VL_SHAPE_TRIANGLES ? 1 : 2) * (size_t)d->faces;
-    most = d->vertices > most ? d->vertices : most;
+    max = d->vertices > max ? d->vertices : max;
   }
   if (vertices > 0x3fffffff || faces > 0x3fffffff)
     return true; /* too large to check: no faces, no findings */
   uint32_t size = table_size(vertices);
   uint32_t *table = vl_alloc_zero(scene->context, size, sizeof *table);
-  uint32_t *welded = vl_alloc_array(scene->context, most + 1, sizeof *welded);
+  uint32_t *welded = vl_alloc_array(scene->context, max + 1, sizeof *welded);
   b->points = vl_alloc_array(scene->context, vertices + 1, 3 * sizeof *b->points);
   b->faces3 = vl_alloc_array(scene->context, faces + 1, 3 * sizeof *b->faces3);
   bool fine = table && welded && b->points && b->faces3;

@@ -32,7 +32,7 @@ static void visit(void *user, const vlThing *thing) {
 }
 
 static bool find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain *plain) {
-  const double tenth = 0.1, most = 0.9, wide = 8, covered = 0.3, around = 0.25;
+  const double tenth = 0.1, max = 0.9, wide = 8, covered = 0.3, around = 0.25;
   vlExtent whole = vl_extent_nothing;
   if (scene->frame_points.count || !vl_things_are_few(scene))
     return false;
@@ -46,7 +46,7 @@ static bool find(const vlScene *scene, const vlExtent *boxes, int axis, vlPlain 
               .low = vl_extent_nothing,
               .model = vl_extent_nothing};
   vl_things_visit(scene, boxes, visit, &s);
-  if (!(s.flat > most * s.surface) || !(s.model.low[0] <= s.model.high[0]))
+  if (!(s.flat > max * s.surface) || !(s.model.low[0] <= s.model.high[0]))
     return false;
   const double model = fmax(widest(&s.model, axis), vl_extent_size(&s.model, axis));
   const double footprint =

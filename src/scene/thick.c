@@ -44,7 +44,7 @@ static int find_wall(const vlProbe *s, const vlExtent *box, int first, int side,
   const int axis = side / 2;
   const double size = vl_extent_size(box, axis), third = size / 3, same = 0.005 * size;
   const double end = side % 2 ? box->high[axis] : box->low[axis];
-  int most = 0;
+  int max = 0;
   *at = end;
   for (int k = first; k < first + VL_PROBE_AROUND; k++) {
     double p[3], q[3];
@@ -58,12 +58,12 @@ static int find_wall(const vlProbe *s, const vlExtent *box, int first, int side,
       point_at(s, j, q);
       count += fabs(q[axis] - p[axis]) <= same;
     }
-    if (count > most) {
-      most = count;
+    if (count > max) {
+      max = count;
       *at = p[axis];
     }
   }
-  return most;
+  return max;
 }
 
 /* Whether a point on something is well inside of the walls: furniture. */

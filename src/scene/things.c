@@ -24,18 +24,18 @@ static vlExtent body_of(const double p[3][3], const vlExtent *box) {
   const double thin = 0.1; /* the shortest edge of a needle over its others */
   double squared[3];       /* lengths of the edges that begin at each corner */
   vlExtent body = vl_extent_nothing;
-  int least = 0;
+  int min = 0;
   for (int k = 0; k < 3; k++) {
     squared[k] = 0;
     for (int i = 0; i < 3; i++)
       squared[k] += (p[(k + 1) % 3][i] - p[k][i]) * (p[(k + 1) % 3][i] - p[k][i]);
-    least = squared[k] < squared[least] ? k : least;
+    min = squared[k] < squared[min] ? k : min;
   }
-  const double others = fmin(squared[(least + 1) % 3], squared[(least + 2) % 3]);
-  if (!(squared[least] < thin * thin * others))
+  const double others = fmin(squared[(min + 1) % 3], squared[(min + 2) % 3]);
+  if (!(squared[min] < thin * thin * others))
     return *box;
-  vl_extent_grow(&body, p[least]);
-  vl_extent_grow(&body, p[(least + 1) % 3]);
+  vl_extent_grow(&body, p[min]);
+  vl_extent_grow(&body, p[(min + 1) % 3]);
   return body;
 }
 

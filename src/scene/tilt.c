@@ -71,14 +71,14 @@ bool vl_tilt_find(const vlScene *scene, const vlExtent *box, double n[3]) {
   for (int sweep = 0; sweep < MAX_SWEEPS; sweep++)
     for (int i = 0; i < 3; i++)
       rotate(a, v, i, (i + 1) % 3);
-  int least = 0;
+  int min = 0;
   for (int i = 1; i < 3; i++)
-    least = a[i][i] < a[least][least] ? i : least;
-  const int one = (least + 1) % 3;
-  const int two = (least + 2) % 3;
+    min = a[i][i] < a[min][min] ? i : min;
+  const int one = (min + 1) % 3;
+  const int two = (min + 2) % 3;
   const double next = fmin(a[one][one], a[two][two]);
-  const double most = fmax(a[one][one], a[two][two]);
+  const double max = fmax(a[one][one], a[two][two]);
   for (int i = 0; i < 3; i++)
-    n[i] = v[i][least];
-  return isfinite(most) && a[least][least] < thin * next && next > thin * most;
+    n[i] = v[i][min];
+  return isfinite(max) && a[min][min] < thin * next && next > thin * max;
 }

@@ -14,7 +14,7 @@ enum { DIRECTIONS = 24, LOW = 0, HIGH = 1, WHOLE = 2 };
 
 /* The support of a set of points in a plane: the largest coordinate in each direction. */
 typedef struct Hull {
-  double most[DIRECTIONS];
+  double max[DIRECTIONS];
 } Hull;
 
 typedef struct Ends {
@@ -26,7 +26,7 @@ typedef struct Ends {
 
 static void grow(const Ends *e, Hull *hull, double x, double y) {
   for (int k = 0; k < DIRECTIONS; k++)
-    hull->most[k] = fmax(hull->most[k], x * e->cosine[k] + y * e->sine[k]);
+    hull->max[k] = fmax(hull->max[k], x * e->cosine[k] + y * e->sine[k]);
 }
 
 /* The model's ends to the left and right: hands, wings. */
@@ -62,8 +62,8 @@ static double area(const Hull *hull) {
   const double turn = 2 * M_PI / DIRECTIONS, c = vl_precise_cos(turn), s = vl_precise_sin(turn);
   double sum = 0;
   for (int k = 0; k < DIRECTIONS; k++) {
-    const double h = hull->most[k], before = hull->most[(k + DIRECTIONS - 1) % DIRECTIONS],
-                 after = hull->most[(k + 1) % DIRECTIONS];
+    const double h = hull->max[k], before = hull->max[(k + DIRECTIONS - 1) % DIRECTIONS],
+                 after = hull->max[(k + 1) % DIRECTIONS];
     sum += 0.5 * h * (before + after - 2 * h * c) / s;
   }
   return sum;
@@ -86,7 +86,7 @@ static bool measure(const vlScene *scene, const vlExtent *boxes, Ends *e) {
     e->sine[k] = vl_precise_sin(turn);
     for (int axis = 0; axis < 3; axis++)
       for (int part = 0; part < 3; part++)
-        e->hulls[axis][part].most[k] = -INFINITY;
+        e->hulls[axis][part].max[k] = -INFINITY;
   }
   vl_extent_visit(scene, boxes, NULL, visit, e);
   return true;
@@ -99,8 +99,8 @@ static double size_of(const Ends *e, int axis) {
 /* Whether the model looks turned about the axis: the other two have the same ends. */
 static bool is_round(const Ends *e, int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  const double most = fmax(size_of(e, i), size_of(e, j));
-  if (fabs(size_of(e, i) - size_of(e, j)) > 0.03 * most)
+  const double max = fmax(size_of(e, i), size_of(e, j));
+  if (fabs(size_of(e, i) - size_of(e, j)) > 0.03 * max)
     return false;
   const double ends[4] = {share(e, i, LOW), share(e, i, HIGH), share(e, j, LOW),
                           share(e, j, HIGH)};
@@ -132,10 +132,10 @@ static bool has_ground(const vlScene *scene, const vlExtent *boxes, vlPlains *pl
 
 /* Whether the model is an open sheet that lies: terrain. */
 static bool is_sheet(const vlScene *scene, int axis) {
-  const double most = 0.7;
+  const double max = 0.7;
   double n[3];
   vl_facing_mean_normal(scene, false, n);
-  return fabs(n[axis]) >= most;
+  return fabs(n[axis]) >= max;
 }
 
 /* Whether the model is a figure on its feet with its arms stretched out: the same on the left
@@ -153,17 +153,17 @@ static bool is_figure(const Ends *e, int now, int other) {
 /* Whether the model has a wide base and a small top along `other`, and along `now` no such
  * thing: a chair. */
 static bool has_foot(const Ends *e, int now, int other) {
-  const double wide = 0.8, small = 0.3, most = 0.6;
+  const double wide = 0.8, small = 0.3, max = 0.6;
   return share(e, other, LOW) >= wide && share(e, other, HIGH) <= small &&
-         share(e, now, LOW) - share(e, now, HIGH) <= most;
+         share(e, now, LOW) - share(e, now, HIGH) <= max;
 }
 
 /* Whether the model stands on its lowest part along `other`, and not along `now`. */
 static bool stands(const Ends *e, int now, int other) {
   const double no_base = 0.12, base = 0.15, larger = 0.25;
-  const double most = fmax(size_of(e, 0), fmax(size_of(e, 1), size_of(e, 2)));
+  const double max = fmax(size_of(e, 0), fmax(size_of(e, 1), size_of(e, 2)));
   const double low = share(e, other, LOW), high = share(e, other, HIGH);
-  if (size_of(e, other) < 0.5 * most)
+  if (size_of(e, other) < 0.5 * max)
     return false;
   if (has_foot(e, now, other) || is_figure(e, now, other))
     return true;
@@ -178,10 +178,10 @@ static bool stands(const Ends *e, int now, int other) {
 static double stability(const Ends *e, const vlPosture *p, int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double x = p->middle[i] * size_of(e, i), y = p->middle[j] * size_of(e, j);
-  double least = INFINITY;
+  double min = INFINITY;
   for (int k = 0; k < DIRECTIONS; k++)
-    least = fmin(least, e->hulls[axis][LOW].most[k] - x * e->cosine[k] - y * e->sine[k]);
-  return least / size_of(e, axis);
+    min = fmin(min, e->hulls[axis][LOW].max[k] - x * e->cosine[k] - y * e->sine[k]);
+  return min / size_of(e, axis);
 }
 
 /* Height as a share of the smaller of the other two sides. */
@@ -195,11 +195,11 @@ static double flatness(const Ends *e, int axis) {
  * stands firmer as it is. (These numbers are of a prototype of the measure, with other
  * samples.) */
 static bool is_symmetric_otherwise(const Ends *e, const vlPosture *p, int now, int other) {
-  const double chart = 0.15, flat = 0.4, least = now == 1 ? 0.2 : 0.35, more = 0.05, back = 0.5,
+  const double chart = 0.15, flat = 0.4, min = now == 1 ? 0.2 : 0.35, more = 0.05, back = 0.5,
                firm = 0.1, height = flatness(e, other);
   if (height < chart || (height < flat && p->ends[other][LOW] >= back))
     return false;
-  if (p->symmetry[now] - p->symmetry[other] < (height < flat ? least + more : least))
+  if (p->symmetry[now] - p->symmetry[other] < (height < flat ? min + more : min))
     return false;
   const double stands = stability(e, p, now);
   return stands < firm || stability(e, p, other) > stands;
@@ -222,8 +222,7 @@ static bool is_terrain(const vlPosture *p, int axis) {
 /* Whether the model is a storey: hollow, with a floor and straight walls, and as high along
  * `other` as rooms are, in metres, centimetres or millimetres. */
 static bool is_storey(const Ends *e, const vlPosture *p, int now, int other) {
-  const double low = 2, high = 4.5, floor_least = 0.8, wall_least = 0.5, hollow = 3,
-               most = 0.85;
+  const double low = 2, high = 4.5, floor_least = 0.8, wall_least = 0.5, hollow = 3, max = 0.85;
   const double height = size_of(e, other);
   bool storey = false;
   for (double unit = 1; unit <= 1000; unit *= unit > 1 ? 10 : 100)
@@ -233,7 +232,7 @@ static bool is_storey(const Ends *e, const vlPosture *p, int now, int other) {
       storey = storey && p->ends[i][LOW] >= wall_least && p->ends[i][HIGH] >= wall_least &&
                p->silhouette[i] >= hollow;
   return storey && p->ends[other][LOW] >= floor_least &&
-         height <= most * fmin(size_of(e, now), size_of(e, 0));
+         height <= max * fmin(size_of(e, now), size_of(e, 0));
 }
 
 /* How the parts of a model, its shapes, stand along two axes. */

@@ -45,9 +45,9 @@ int vl_kind_find(const vlKindFamily *family, const char *name) {
   return -1;
 }
 
-size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most) {
+size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t max) {
   size_t count = 0;
-  for (uint32_t i = 0; i < family->kind_count && count < most; i++)
+  for (uint32_t i = 0; i < family->kind_count && count < max; i++)
     if (family->rows[i]->name)
       names[count++] = family->rows[i]->name;
   return count;
@@ -365,7 +365,7 @@ bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectru
 }
 
 uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,
-                         uint32_t most) {
+                         uint32_t max) {
   uint32_t n = 0;
   VL_EACH_PARAMETER(p, row) {
     const char *at = (const char *)def;
@@ -377,7 +377,7 @@ uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids
             ? vl_member_texture(&vl_member_types[second_type(p)], at + p->second)
             : 0};
     for (int k = 0; k < 2; k++)
-      if (read[k] && n < most)
+      if (read[k] && n < max)
         ids[n++] = (vlTextureId){read[k]};
   }
   return n;

@@ -24,8 +24,8 @@
     .size = sizeof(((const Def *)NULL)->path), .description = text_line, __VA_ARGS__ \
   }
 #define VL_DEFAULT(...) .value = {__VA_ARGS__}
-#define VL_RANGE(least, most) .low = (least), .high = (most)
-#define VL_FROM(least) .low = (least), .high = (double)__builtin_inff()
+#define VL_RANGE(min, max) .low = (min), .high = (max)
+#define VL_FROM(min) .low = (min), .high = (double)__builtin_inff()
 /* Another member that gets the same value. */
 #define VL_SECOND(Def, path) .second = offsetof(Def, path)
 
@@ -131,8 +131,8 @@ const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);
 /* The kind that has this name or alias in files. -1: none. */
 int vl_kind_find(const vlKindFamily *family, const char *name);
 /* Gives the names that kinds have in files, without aliases, for "did you mean" messages.
- * Returns the number of names, at most `most`. */
-size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t most);
+ * Returns the number of names, at most `max`. */
+size_t vl_kind_names(const vlKindFamily *family, const char **names, size_t max);
 /* The parameter that has this name or alias in files. Null: none. */
 const vlParameter *vl_row_find(const vlKindRow *row, const char *name);
 
@@ -203,9 +203,8 @@ bool vl_choices_check(vlSettingGroup group, size_t begin, size_t size, const voi
  * bools, and inputs without texture that hold one number. False: the parameter is of another
  * type. */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);
-/* Gives the textures that the members of the row read, at most `most`. Returns their number. */
-uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids,
-                         uint32_t most);
+/* Gives the textures that the members of the row read, at most `max`. Returns their number. */
+uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids, uint32_t max);
 /* Whether the value of a parameter is its default. */
 bool vl_parameter_is_default(const vlParameter *parameter, const void *def, bool spectrum);
 

@@ -5,7 +5,7 @@
 
 #define SENSOR(TYPE, path, line, ...) \
   VL_PARAMETER(TYPE, vlSensorDef, NULL, path, line, __VA_ARGS__)
-#define ABOVE(least, most) VL_RANGE(least, most), .flags = VL_PARAMETER_ABOVE_LOW
+#define ABOVE(min, max) VL_RANGE(min, max), .flags = VL_PARAMETER_ABOVE_LOW
 /* A part of a sensor file that a function reads into several members; docs/sensor.md describes
  * it. */
 #define RULE(name, kind, line)                                                             \

@@ -20,8 +20,8 @@
 #include "velo/tracer.h"
 
 #define DEGREES 0.017453292519943295
-#define WITHIN(least, most) .low = (least), .high = (most)
-#define ABOVE(least) VL_FROM(least), .flags = VL_PARAMETER_ABOVE_LOW
+#define WITHIN(min, max) .low = (min), .high = (max)
+#define ABOVE(min) VL_FROM(min), .flags = VL_PARAMETER_ABOVE_LOW
 #define UNSET .flags = VL_PARAMETER_UNSET
 #define NAME(kind, name) #name,
 /* A member that no type of parameters has: an int that is never negative. */

@@ -50,14 +50,14 @@ static inline bool vl_is_similarity(const double m[12], double *scale) {
  * `scale`, relative to it: bound from the entries of m^T m / scale^2 - 1 (Gershgorin's
  * circles). */
 static inline double vl_similarity_error(const double m[12], double scale) {
-  double most = 0;
+  double max = 0;
   for (int i = 0; i < 3; i++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)
       sum += __builtin_fabs(vl_dot_columns(m, i, j) / (scale * scale) - (i == j));
-    most = sum > most ? sum : most;
+    max = sum > max ? sum : max;
   }
-  return most;
+  return max;
 }
 
 /* Centre and radius of a full sphere under a similarity, in group space; false for any other

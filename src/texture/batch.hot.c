@@ -223,14 +223,14 @@ static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node
 void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded,
                       float (*const rgb)[VL_SKY_BLOCK], float (*const lambda)[VL_SKY_BLOCK],
                       float (*const value)[VL_SKY_BLOCK]) {
-  float most = albedo ? 1.0f : VL_INFINITY;
+  float max = albedo ? 1.0f : VL_INFINITY;
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
     float red = rgb[0][k], green = rgb[1][k], blue = rgb[2][k];
-    red = red > most ? most : red;
-    green = green > most ? most : green;
-    blue = blue > most ? most : blue;
+    red = red > max ? max : red;
+    green = green > max ? max : green;
+    blue = blue > max ? max : blue;
     float m = vl_max(red, vl_max(green, blue));
     float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
     vlRgbPoint at = vl_rgb_point(red * inv, green * inv, blue * inv);

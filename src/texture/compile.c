@@ -122,7 +122,7 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
 /* Computes the scratch rows of a node, its own (as in texture/batch.hot.c) and those of the
  * input that needs most, and the number of nodes visited for it. False: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
-  uint32_t own = 0, most = 0, visits = 1;
+  uint32_t own = 0, max = 0, visits = 1;
   switch ((vlTextureKind)node->kind) {
     case VL_TEXTURE_SCALE:
       own = 1;
@@ -144,12 +144,12 @@ static bool weigh(const vlWorld *world, vlTextureNode *node) {
     if (input[i] < 0)
       continue;
     const vlTextureNode *n = &world->nodes.items[input[i]];
-    most = n->rows > most ? n->rows : most;
+    max = n->rows > max ? n->rows : max;
     visits += n->visits;
   }
-  if (own + most > VL_NODE_ROWS || visits > VL_NODE_VISITS)
+  if (own + max > VL_NODE_ROWS || visits > VL_NODE_VISITS)
     return false;
-  node->rows = (uint8_t)(own + most);
+  node->rows = (uint8_t)(own + max);
   node->visits = (uint16_t)visits;
   return true;
 }

@@ -24,12 +24,12 @@ static bool is_covered(const vlImage *image, uint32_t alpha) {
   for (uint32_t y = 0; y < image->height; y++) {
     if (image->type == VL_PIXEL_U8) {
       const uint8_t *row = vl_image_const_row(image, y);
-      uint32_t least = 255;
+      uint32_t min = 255;
       for (uint32_t x = 0; x < image->width; x++) {
         uint32_t v = row[(size_t)x * image->channels + alpha];
-        least = v < least ? v : least;
+        min = v < min ? v : min;
       }
-      if (least < 255)
+      if (min < 255)
         return false;
       continue;
     }
@@ -344,13 +344,13 @@ static bool list_image(vlWorld *world, Preload *job, const vlTextureDef *def, vl
 
 vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
   enum { MAX_TEXTURES = 4096 }; /* duplicates are found by linear search */
-  size_t most = scene->textures.count < MAX_TEXTURES ? scene->textures.count : MAX_TEXTURES;
+  size_t max = scene->textures.count < MAX_TEXTURES ? scene->textures.count : MAX_TEXTURES;
   Preload job = {.world = world, .scene = scene};
-  job.defs = vl_alloc_array(world->context, most + 1, sizeof *job.defs);
-  job.keys = vl_alloc_array(world->context, most + 1, sizeof *job.keys);
-  job.mipmaps = vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps);
+  job.defs = vl_alloc_array(world->context, max + 1, sizeof *job.defs);
+  job.keys = vl_alloc_array(world->context, max + 1, sizeof *job.keys);
+  job.mipmaps = vl_alloc_zero(world->context, max + 1, sizeof *job.mipmaps);
   bool ok = job.defs && job.mipmaps && job.keys;
-  for (size_t i = 0; ok && i < scene->textures.count && job.count < most; i++) {
+  for (size_t i = 0; ok && i < scene->textures.count && job.count < max; i++) {
     const vlTextureDef *def = &scene->textures.items[i];
     if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data))
       ok = list_image(world, &job, def, error);

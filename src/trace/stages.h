@@ -113,8 +113,8 @@ typedef struct vlBounceSteps {
    * Null: none is added. */
   vlAddLight *pass_first, *pass_later;
 } vlBounceSteps;
-/* The bounces of all tracers: traces n paths from t->s->rays on, for at most `most` bounces. */
-void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps);
+/* The bounces of all tracers: traces n paths from t->s->rays on, for at most `max` bounces. */
+void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t max, const vlBounceSteps *steps);
 static inline uint32_t vl_bounce_dimension(uint32_t depth) {
   return VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
 }

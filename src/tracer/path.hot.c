@@ -152,9 +152,9 @@ static void make_rays(const vlTracing *t, uint32_t n, uint32_t depth, const vlVe
     float b0 = p->beta[0][i] * s->weight[0][i], b1 = p->beta[1][i] * s->weight[1][i];
     float b2 = p->beta[2][i] * s->weight[2][i], b3 = p->beta[3][i] * s->weight[3][i];
     float eta = p->eta_scale[i] * s->eta_scale[i];
-    float most = vl_largest4(b0, b1, b2, b3);
-    float survive = vl_roulette_survival(most * eta, depth);
-    uint32_t lives = most > 0.0f && !(s->flags[i] & VL_SAMPLED_NONE) && u[i] < survive ? 1 : 0;
+    float max = vl_largest4(b0, b1, b2, b3);
+    float survive = vl_roulette_survival(max * eta, depth);
+    uint32_t lives = max > 0.0f && !(s->flags[i] & VL_SAMPLED_NONE) && u[i] < survive ? 1 : 0;
     float inv = survive > 0.0f ? 1.0f / survive : 0.0f;
     float sum = b0 + b1 + b2 + b3;
     alive[i] = lives;

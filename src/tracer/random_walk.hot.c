@@ -27,12 +27,12 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vl_stage_local(n, &s->at, &w, s->values.wi);
   vl_stage_bsdf(t, n, &s->at, s->at.shade.wo, &s->values);
   for (uint32_t i = 0; i < n; i++) {
-    float most = 0.0f;
+    float max = 0.0f;
     vl_passed_go_on(t, &s->at, i, bsdf->wi[2][i]);
     for (int c = 0; c < 4; c++)
-      most = vl_max(most, p->beta[c][i] * (bsdf->value[c][i] * (4.0f * VL_PI)));
+      max = vl_max(max, p->beta[c][i] * (bsdf->value[c][i] * (4.0f * VL_PI)));
     s->order[count] = i;
-    count += most > 0.0f;
+    count += max > 0.0f;
   }
   vl_permute_paths(p, next, s->order, count);
   for (uint32_t k = 0; k < count; k++) {

@@ -8,13 +8,13 @@
 #include "trace/stages.h"
 #include "velo/paths.h"
 
-/* Room for the paths of a batch: lane i has vertices from i * most_vertices on, and
+/* Room for the paths of a batch: lane i has vertices from i * max_vertices on, and
  * contributions likewise. What does not fit is counted in lost. */
 typedef struct vlPathRecorder {
   vlPath *paths; /* by lane; the counts are written */
   vlPathVertex *vertices;
   vlPathContribution *contributions;
-  uint32_t most_vertices, most_contributions, lost;
+  uint32_t max_vertices, max_contributions, lost;
 } vlPathRecorder;
 
 /* The n rays reached these hits. */

@@ -11,13 +11,13 @@ static vlPathRecorder *recorder(const vlTracing *t) {
 static vlPathVertex *last_vertex(const vlTracing *t, uint32_t lane) {
   vlPathRecorder *r = recorder(t);
   uint32_t count = r->paths[lane].vertex_count;
-  return count ? &r->vertices[(size_t)lane * r->most_vertices + count - 1] : NULL;
+  return count ? &r->vertices[(size_t)lane * r->max_vertices + count - 1] : NULL;
 }
 
 /* A new vertex, all zero; null if there is no room. */
 static vlPathVertex *new_vertex(const vlTracing *t, uint32_t lane) {
   vlPathRecorder *r = recorder(t);
-  if (r->paths[lane].vertex_count == r->most_vertices) {
+  if (r->paths[lane].vertex_count == r->max_vertices) {
     r->lost++;
     return NULL;
   }
@@ -97,12 +97,12 @@ static void name_light(const vlWorld *world, uint32_t light, vlPathContribution 
 void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *light) {
   vlPathRecorder *r = recorder(t);
   vlPath *path = &r->paths[lane];
-  if (path->contribution_count == r->most_contributions || path->vertex_count == 0) {
+  if (path->contribution_count == r->max_contributions || path->vertex_count == 0) {
     r->lost++;
     return;
   }
   vlPathContribution *to =
-      &r->contributions[(size_t)lane * r->most_contributions + path->contribution_count++];
+      &r->contributions[(size_t)lane * r->max_contributions + path->contribution_count++];
   *to = *light;
   to->vertex = path->vertex_count - 1;
 }
@@ -206,10 +206,10 @@ void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
 
 /* After the scattering, of the four wavelengths. */
 static float largest_throughput(const vlPathVertex *v) {
-  float most = 0.0f;
+  float max = 0.0f;
   for (int c = 0; c < 4; c++)
-    most = vl_max(most, v->throughput[c] * v->factor[c]);
-  return most;
+    max = vl_max(max, v->throughput[c] * v->factor[c]);
+  return max;
 }
 
 /* The paths of the `count` vertices in `order` go on along the rays of the same indices. lane:
@@ -240,9 +240,9 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertice
     v->pdf = none ? 0.0f : s->pdf[i];
     for (int c = 0; c < 4; c++)
       v->factor[c] = none ? 0.0f : s->weight[c][i];
-    float most = largest_throughput(v);
-    v->survival = vl_roulette_survival(most * next->eta_scale[i], depth);
-    v->fate = none || !(most > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
+    float max = largest_throughput(v);
+    v->survival = vl_roulette_survival(max * next->eta_scale[i], depth);
+    v->fate = none || !(max > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
   }
   go_on(t, p->lane, order, count, next);
 }
@@ -268,9 +268,9 @@ void vl_record_phase(vlTracing *t, uint32_t n, uint32_t depth, const vlPaths *p,
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v)
       continue;
-    float most = largest_throughput(v);
-    v->survival = vl_roulette_survival(most * p->eta_scale[i], depth);
-    v->fate = most > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
+    float max = largest_throughput(v);
+    v->survival = vl_roulette_survival(max * p->eta_scale[i], depth);
+    v->fate = max > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
   }
   go_on(t, p->lane, kept, count, p);
 }

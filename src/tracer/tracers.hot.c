@@ -145,14 +145,14 @@ static void whiten(uint32_t n, vlVertices *at) {
   }
 }
 
-void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps) {
+void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t max, const vlBounceSteps *steps) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *media = steps->in_media ? s->volume : NULL;
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     bool camera = depth == 0 && !t->light, irradiance = camera && t->def->irradiance;
     vlAddLight *pass = depth == 0 ? steps->pass_first : steps->pass_later;
     if (media) {
-      vl_volume_travel(t, n, depth, depth < most && !t->light, pass, &s->rays, &media->rays,
+      vl_volume_travel(t, n, depth, depth < max && !t->light, pass, &s->rays, &media->rays,
                        &s->hits, &media->ends);
     } else {
       vl_stage_hits(t, n, camera, pass, &s->rays, &s->hits);
@@ -163,7 +163,7 @@ void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSte
       break;
     if (irradiance)
       forget_light(t, n, &s->hits);
-    if (depth >= most)
+    if (depth >= max)
       break;
     if (t->def->limited)
       vl_limits_end(t, n, &s->rays, &s->hits, media ? &media->ends : NULL);

@@ -90,7 +90,7 @@ static vlAffine true_pose(const Motion *motion, double time) {
  * at f, and returns the largest squared distance between the two positions of a corner. */
 static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAffine *b,
                               double f, const float low[3], const float high[3]) {
-  double m[9], t[3], most = 0;
+  double m[9], t[3], max = 0;
   for (int i = 0; i < 9; i++)
     m[i] = at->m[i] - ((1 - f) * a->m[i] + f * b->m[i]);
   for (int i = 0; i < 3; i++)
@@ -101,16 +101,16 @@ static double corner_distance(const vlAffine *at, const vlAffine *a, const vlAff
            q[3];
     for (int i = 0; i < 3; i++)
       q[i] = m[3 * i] * p[0] + m[3 * i + 1] * p[1] + m[3 * i + 2] * p[2] + t[i];
-    most = fmax(most, vl_dot3(q, q));
+    max = fmax(max, vl_dot3(q, q));
   }
-  return most;
+  return max;
 }
 
 /* Largest deviation of a corner of the box from the exact motion, sampled at three times in
  * each step. */
 static double strayed(const Motion *motion, uint32_t steps, const float low[3],
                       const float high[3]) {
-  double most = 0;
+  double max = 0;
   vlAffine ends[2];
   ends[1] = true_pose(motion, 0);
   for (uint32_t k = 0; k < steps; k++) {
@@ -119,10 +119,10 @@ static double strayed(const Motion *motion, uint32_t steps, const float low[3],
     for (int part = 1; part < 4; part++) {
       double f = part / 4.0;
       vlAffine at = true_pose(motion, (k + f) / steps);
-      most = fmax(most, corner_distance(&at, &ends[0], &ends[1], f, low, high));
+      max = fmax(max, corner_distance(&at, &ends[0], &ends[1], f, low, high));
     }
   }
-  return sqrt(most);
+  return sqrt(max);
 }
 
 /* Allowed deviation, relative to the size of the moving object. A rotation by 180 degrees
@@ -143,15 +143,15 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
   }
   /* The deviation is proportional to 1 / steps^2, so numbers of steps that are too small can be
    * skipped. */
-  double least = 1;
+  double min = 1;
   for (size_t i = 0; i < sizeof tries; i++) {
-    if (tries[i] < least && tries[i] < MAX_STEPS)
+    if (tries[i] < min && tries[i] < MAX_STEPS)
       continue;
     double far = strayed(motion, tries[i], low, high);
     if (far <= tolerance * size)
       return tries[i];
     if (i == 0 && motion->source->keys == 2 && size > 0)
-      least = 0.7 * sqrt(far / (tolerance * size));
+      min = 0.7 * sqrt(far / (tolerance * size));
   }
   return MAX_STEPS;
 }
@@ -388,8 +388,8 @@ static void step_velocity(const vlWorldInstance *q, int64_t k, const double g[3]
 static void key_velocity(const double own[3], const double other[3], double v[3]) {
   const double smooth = 0.15;
   double change[3] = {own[0] - other[0], own[1] - other[1], own[2] - other[2]};
-  double most = fmax(vl_dot3(own, own), vl_dot3(other, other));
-  bool bends = vl_dot3(change, change) > smooth * smooth * most;
+  double max = fmax(vl_dot3(own, own), vl_dot3(other, other));
+  bool bends = vl_dot3(change, change) > smooth * smooth * max;
   for (int i = 0; i < 3; i++)
     v[i] = bends ? own[i] : 0.5 * (own[i] + other[i]);
 }

@@ -170,16 +170,16 @@ static void of_a_distorted_lens(void **state) {
   vlCamera camera;
   assert_int_equal(vl_camera_make(&camera_def, &camera, NULL, NULL), VL_OK);
   vlDrawing *d = draw(&camera, 1, NULL);
-  double least = INFINITY, most = 0; /* barrel: the true window is a cushion */
+  double min = INFINITY, max = 0; /* barrel: the true window is a cushion */
   for (uint32_t i = 0; i < d->line_count; i++) {
     const vlDrawingLine *l = &d->lines[i];
     if (l->part != VL_DRAWING_WINDOW || fabs(l->from[1]) < fabs(l->from[0]) * 0.9)
       continue;
     assert_true(fabs(l->from[2] + 1) < 1e-9);
-    least = fmin(least, fabs(l->from[1]));
-    most = fmax(most, fabs(l->from[1]));
+    min = fmin(min, fabs(l->from[1]));
+    max = fmax(max, fabs(l->from[1]));
   }
-  assert_true(least < 0.52 && most > 0.52 && most < 0.7);
+  assert_true(min < 0.52 && max > 0.52 && max < 0.7);
   vl_drawing_destroy(d);
 }
 

@@ -218,7 +218,7 @@ static void test_colour_noise(void **state) {
   (void)state;
   static const struct {
     float reflectance[3];
-    double most; /* relative variance */
+    double max; /* relative variance */
   } rows[] = {{{0.8f, 0.8f, 0.8f}, 0.004},
               {{0.8f, 0.5f, 0.3f}, 0.004},
               {{0.63f, 0.065f, 0.05f}, 0.025},
@@ -226,7 +226,7 @@ static void test_colour_noise(void **state) {
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     double noise = colour_noise(vl_visible_lambda, rows[i].reflectance);
     double before = colour_noise(luminance_lambda, rows[i].reflectance);
-    assert_true(noise < rows[i].most && before > 8 * rows[i].most);
+    assert_true(noise < rows[i].max && before > 8 * rows[i].max);
   }
 }
 

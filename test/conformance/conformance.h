@@ -218,7 +218,7 @@ static double variance_of_mean(const Mean *m) {
 /* How far a law looks, in the unit of what it compares. */
 typedef struct Sight {
   double slack; /* what is not exact in the comparison itself */
-  double least; /* the least mistake that must be found */
+  double min;   /* the least mistake that must be found */
 } Sight;
 
 /* A value with its standard error against what it must be. It is broken if they differ by more
@@ -231,9 +231,9 @@ static void check_value(const char *family, const char *kind, const char *what, 
   const double power = 3.1;
   if (!(fabs(value - known) <= by_chance * error + sight.slack))
     broken(family, kind, "%s: %.4f +- %.4f, not %.4f", what, value, error, known);
-  if (!((by_chance + power) * error + sight.slack <= sight.least))
+  if (!((by_chance + power) * error + sight.slack <= sight.min))
     broken(family, kind, "%s: %.4f +- %.4f is too noisy to find a mistake of %.4f", what, value,
-           error, sight.least);
+           error, sight.min);
 }
 static void check_mean(const char *family, const char *kind, const char *what, const Mean *mean,
                        double known, Sight sight) {

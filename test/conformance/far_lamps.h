@@ -82,7 +82,7 @@ static void check_row(double turn, double cone) {
   const Mean alike = light_beside_row("uniform", turn, cone);
   for (int s = 0; s < 2; s++) {
     const Mean mean = light_beside_row(samplers[s], turn, cone);
-    const Sight sight = {.slack = 0, .least = 0.3 * mean_of(&alike)};
+    const Sight sight = {.slack = 0, .min = 0.3 * mean_of(&alike)};
     check_same_mean("lights", samplers[s], "light beside a row", &mean, &alike, sight);
   }
 }
@@ -105,7 +105,7 @@ static void lamps_elsewhere(void **state) {
       for (int lamps = 1; lamps < 6; lamps += 2) {
         char what[100];
         const Mean mean = light_of_floor(samplers[s], form, lamps);
-        const Sight sight = {.slack = 0, .least = 0.08 * mean_of(&alone)};
+        const Sight sight = {.slack = 0, .min = 0.08 * mean_of(&alone)};
         snprintf(what, sizeof what, "%d lamps of form %d elsewhere", lamps, form);
         check_same_mean("lights", samplers[s], what, &mean, &alone, sight);
       }

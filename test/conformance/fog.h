@@ -43,10 +43,9 @@ static void tracers_in_fog(void **state) {
     vlImage *image = image_of_fog(family->rows[k]->name, 3 * c->room_spp);
     const Mean off = mean_difference(image, paths);
     vl_image_destroy(image);
-    const double least =
-        k == VL_TRACER_BIDIRECTIONAL ? 0.1 : 0.45; /* single paths are bright */
+    const double min = k == VL_TRACER_BIDIRECTIONAL ? 0.1 : 0.45; /* single paths are bright */
     check_mean("tracers", family->rows[k]->name, "a room full of fog", &off, 0,
-               (Sight){(c->blurs ? 0.15 : 0.002) * whole, least * whole});
+               (Sight){(c->blurs ? 0.15 : 0.002) * whole, min * whole});
   }
   vl_image_destroy(paths);
   expect_no_failures();

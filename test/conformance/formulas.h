@@ -14,7 +14,7 @@ static void check_formula(const char *kind, const MaterialVariant *variant) {
   static double known[VL_OWN_BATCH][3];
   /* the eye of scattering_of sees the square at y = .2, where v is .6 */
   MaterialAt at = {.across = 0.2};
-  double most = 0;
+  double max = 0;
   uint32_t wrong = 0;
   uint32_t last = 0;
   scene_text(text, material_form, kind, variant->parameters);
@@ -24,12 +24,12 @@ static void check_formula(const char *kind, const MaterialVariant *variant) {
     even_direction(i, VL_OWN_BATCH, 0.1, at.in);
     variant->formula(&at, known[i]);
     for (int c = 0; c < 3; c++)
-      most = fmax(most, known[i][c]);
+      max = fmax(max, known[i][c]);
   }
   for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
     for (int c = 0; c < 3; c++) {
       const double off = fabs((double)s->value[c][i] - known[i][c]);
-      if (off <= 0.02 * known[i][c] + 1e-4 * most)
+      if (off <= 0.02 * known[i][c] + 1e-4 * max)
         continue;
       wrong++;
       last = 3 * i + (uint32_t)c;

@@ -43,7 +43,7 @@ static void ask_holes(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
  * there, and of the rest the share of red. */
 static void check_holes(const char *materials, double amount, double grey) {
   const double red = 0.3;
-  const Sight sight = {.slack = 1e-3, .least = 0.04};
+  const Sight sight = {.slack = 1e-3, .min = 0.04};
   char text[TEXT];
   Found f = {.rays = new_rays(), .hits = calloc(1, sizeof(vlTraceHits))};
   assert_non_null(f.hits);
@@ -154,7 +154,7 @@ static void check_coats(void) {
       snprintf(what, sizeof what, "a coat %s: light that is sent to side %d", coats[i].name,
                side);
       check_same_mean("materials", "coateddiffuse", what, &a->light[side], &b->light[side],
-                      (Sight){.slack = 4e-3, .least = 0.03});
+                      (Sight){.slack = 4e-3, .min = 0.03});
     }
     free_sent(a);
     free_sent(b);
@@ -199,7 +199,7 @@ static void check_green_mirror(void) {
       16);
   for (int side = 0; side < 4; side++)
     check_mean("materials", "coatedconductor", "a green mirror: light that is sent",
-               &s->light[side], exp(-0.2 / cos(0.9)), (Sight){.slack = 4e-3, .least = 0.05});
+               &s->light[side], exp(-0.2 / cos(0.9)), (Sight){.slack = 4e-3, .min = 0.05});
   free_sent(s);
 }
 
@@ -314,7 +314,7 @@ static void check_film(void) {
     char what[80];
     snprintf(what, sizeof what, "a thin film at %d nm, beyond its reflectance", 420 + 40 * k);
     check_mean("materials", "principled", what, &w.off[k], 0,
-               (Sight){.slack = 3e-3, .least = 0.02});
+               (Sight){.slack = 3e-3, .min = 0.02});
   }
 }
 
@@ -368,7 +368,7 @@ static void check_whites(void) {
     snprintf(what, sizeof what, "white, %s: light that is sent", whites[i]);
     for (int side = 0; side < 4; side++)
       check_mean("materials", "principled", what, &s->light[side], 1,
-                 (Sight){.slack = 5e-3, .least = 0.03});
+                 (Sight){.slack = 5e-3, .min = 0.03});
     free_sent(s);
   }
 }

@@ -172,8 +172,8 @@ static void judge_material(const MaterialLaws *m) {
     broken("materials", m->kind,
            "%s, %.1f: weight of %u of %u samples is not BSDF over density", p, a,
            m->wrong_weight, m->compared);
-  const Sight sight = {.slack = 5e-3, .least = 0.06};
-  const Sight sharp = {.slack = 2e-3, .least = 0.02};
+  const Sight sight = {.slack = 5e-3, .min = 0.06};
+  const Sight sharp = {.slack = 2e-3, .min = 0.02};
   char what[400];
   snprintf(what, sizeof what, "%s, %.1f: the density, and the share of samples with one", p, a);
   check_same_mean("materials", m->kind, what, &m->density, &m->has_density, sight);
@@ -194,7 +194,7 @@ static void judge_material(const MaterialLaws *m) {
     check_mean("materials", m->kind, what, &m->stays, v->reflected * all, sharp);
   snprintf(what, sizeof what, "%s, %.1f: light along x", p, a);
   if (v->along != 0 && a == material_angles[0])
-    check_mean("materials", m->kind, what, &m->along, 0, (Sight){.slack = 1e-3, .least = 0.01});
+    check_mean("materials", m->kind, what, &m->along, 0, (Sight){.slack = 1e-3, .min = 0.01});
   if (m->unequal > m->both_ways / 100)
     broken("materials", m->kind, "%s, %.1f: %u of %u directions are not reciprocal", p, a,
            m->unequal, m->both_ways);

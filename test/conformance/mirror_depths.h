@@ -28,15 +28,15 @@ static vlImage *image_of_depth(const char *tracer, int depth) {
 }
 
 static void check_mirror_depth(const char *tracer, const TracerCase *c) {
-  vlImage *least = image_of_depth(tracer, c->mirrors_are_free ? 1 : 2);
+  vlImage *min = image_of_depth(tracer, c->mirrors_are_free ? 1 : 2);
   vlImage *greater = image_of_depth(tracer, 4);
-  const Mean off = mean_difference(least, greater);
+  const Mean off = mean_difference(min, greater);
   const double whole = mean_of_green(greater);
   check_mean("tracers", tracer, "a wall in a mirror, by the least limit of bounces", &off, 0,
              (Sight){0.02 * whole, 0.15 * whole});
   if (!(whole > 0.01))
     broken("tracers", tracer, "sees %.4f of a wall in a mirror", whole);
-  vl_image_destroy(least);
+  vl_image_destroy(min);
   vl_image_destroy(greater);
 }
 

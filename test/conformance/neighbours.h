@@ -72,7 +72,7 @@ static void check_plate_inside(const char *name, const MediumCase *c) {
   images[1] = image_of(text, NULL, PLATE_SPP);
   const Mean off = mean_difference(images[0], images[1]);
   check_mean("media", name, "light that passes a plate with one medium on both sides", &off, 0,
-             (Sight){.slack = 2e-3, .least = 0.1});
+             (Sight){.slack = 2e-3, .min = 0.1});
   vl_image_destroy(images[0]);
   vl_image_destroy(images[1]);
 }

@@ -449,13 +449,13 @@ static void check_gltf(const char *family, const char *kind, const char *name,
 
 /* The largest difference of two images, over the brightest pixel. */
 static double difference(const float a[PIXELS], const float b[PIXELS]) {
-  double most = 1e-9;
+  double max = 1e-9;
   double far = 0;
   for (int i = 0; i < PIXELS; i++) {
-    most = fmax(most, fabs((double)a[i]));
+    max = fmax(max, fabs((double)a[i]));
     far = fmax(far, fabs((double)a[i] - (double)b[i]));
   }
-  return far / most;
+  return far / max;
 }
 
 /* The scene with a changed parameter, as another instruction set renders it and as the pbrt

@@ -530,11 +530,11 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
   double across[2 * FILTERED];
   double down[2 * FILTERED];
   /* below 0: the filter has negative lobes, for which no samples are shared */
-  double least = 0;
+  double min = 0;
   for (int k = 0; k < 2 * FILTERED; k++) {
     across[k] = filtered_share(filter, radius, k - FILTERED / 2);
     down[k] = filtered_share(filter, radius_y, k - FILTERED / 2);
-    least = fmin(least, fmin(across[k], down[k]));
+    min = fmin(min, fmin(across[k], down[k]));
   }
   for (uint32_t y = 0; y <= FILTERED; y++)
     for (uint32_t x = 0; x <= FILTERED; x++) {
@@ -545,7 +545,7 @@ static void check_filter(const vlPixelFilter *filter, const char *name, bool sha
   vl_image_destroy(image);
   if (!(fabs(sum - 1) < 0.02))
     broken("filters", name, "%s: light of 1 becomes %.4f", share ? "shared" : "own", sum);
-  if (!(worst < (share && least >= 0 ? 5e-4 : 0.01)))
+  if (!(worst < (share && min >= 0 ? 5e-4 : 0.01)))
     broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
 }
 
@@ -555,14 +555,14 @@ static void check_sign(const vlKindRow *row, vlPixelFilterKind kind) {
   enum { STEPS = 4000 };
   const vlPixelFilter filter = vl_default_pixel_filter(kind);
   const double radius = (double)filter.radius_x;
-  double least = 0;
+  double min = 0;
   for (int i = 0; i <= STEPS; i++)
-    least = fmin(least, filter_shapes[kind](&filter, radius * i / STEPS, radius));
+    min = fmin(min, filter_shapes[kind](&filter, radius * i / STEPS, radius));
   const bool positive = row->traits & VL_FILTER_TRAIT_POSITIVE;
-  if (positive != (least > -1e-9))
+  if (positive != (min > -1e-9))
     broken("filters", row->name,
            "VL_FILTER_TRAIT_POSITIVE is %s in its row, its least value %.4f",
-           positive ? "set" : "not set", least);
+           positive ? "set" : "not set", min);
 }
 
 /* The largest radii that the row allows have films. */
@@ -572,8 +572,8 @@ static void check_radii(const vlKindRow *row, vlPixelFilterKind kind) {
     vlFilmDef def = vl_default_film_def(4, 4);
     vlFilm *film = NULL;
     def.filter = vl_default_pixel_filter(kind);
-    const float most = (float)p->high;
-    memcpy((char *)&def.filter + p->offset, &most, sizeof most);
+    const float max = (float)p->high;
+    memcpy((char *)&def.filter + p->offset, &max, sizeof max);
     if (vl_film_create(context, &def, &film) != VL_OK)
       broken("filters", row->name, "no film with \"%s\" %.9g", p->name, p->high);
     vl_film_destroy(film);

@@ -118,7 +118,7 @@ static uint32_t check_levels(const char *before, const char *parameters) {
   size_t first_brightest = 0;
   for (size_t k = 0; k < json_array_size(levels); k++) {
     double sum = 0;
-    double most = 0;
+    double max = 0;
     size_t brightest = 0;
     uint32_t side = 0;
     for (size_t face = 0; face < 6; face++) {
@@ -127,16 +127,16 @@ static uint32_t check_levels(const char *before, const char *parameters) {
       const double here =
           radiance_of_face(json_string_value(json_object_get(image, "uri")), &side);
       sum += here / 6;
-      brightest = here > most ? face : brightest;
-      most = fmax(most, here);
+      brightest = here > max ? face : brightest;
+      max = fmax(max, here);
     }
     first = k ? first : sum;
     first_side = k ? first_side : side;
     first_brightest = k ? first_brightest : brightest;
-    if (!(most / sum < 0.98 * contrast))
+    if (!(max / sum < 0.98 * contrast))
       broken("lights", "infinite", "%s: level %zu is not more blurred than the one before",
              parameters, k);
-    contrast = most / sum;
+    contrast = max / sum;
     if (!(fabs(sum - first) < 0.005 * first) || side != first_side >> k ||
         brightest != first_brightest)
       broken("lights", "infinite",

@@ -142,10 +142,10 @@ static void look_at_form(const char *form, const char *space, const float color[
 
 static void compare_colors(const char *family, const char *kind, const char *space,
                            const double seen[3], const double known[3]) {
-  const double most = fmax(known[0], fmax(known[1], known[2]));
-  bool same = most > 1e-3;
+  const double max = fmax(known[0], fmax(known[1], known[2]));
+  bool same = max > 1e-3;
   for (int c = 0; c < 3; c++)
-    same = same && fabs(seen[c] - known[c]) <= 0.01 * most;
+    same = same && fabs(seen[c] - known[c]) <= 0.01 * max;
   if (!same)
     broken(family, kind, "colours of %s show as %.4f %.4f %.4f, constants as %.4f %.4f %.4f",
            space, seen[0], seen[1], seen[2], known[0], known[1], known[2]);

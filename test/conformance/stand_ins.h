@@ -23,7 +23,7 @@ static vlImage *image_of_stand_in(vlScene *scene, const char *text) {
 /* The largest difference of parts of the image, over the mean of the brightest part. */
 static double worst_part(const vlImage *image, const vlImage *other) {
   double worst = 0;
-  double most = 1e-9;
+  double max = 1e-9;
   for (uint32_t y = 0; y < WIDTH; y += STAND_IN_PART)
     for (uint32_t x = 0; x < WIDTH; x += STAND_IN_PART)
       for (uint32_t c = 0; c < 3; c++) {
@@ -35,21 +35,21 @@ static double worst_part(const vlImage *image, const vlImage *other) {
           sum[1] += (double)vl_image_get(other, px, py, c);
         }
         worst = fmax(worst, fabs(sum[1] - sum[0]));
-        most = fmax(most, sum[0]);
+        max = fmax(max, sum[0]);
       }
-  return worst / most;
+  return worst / max;
 }
 
 /* form: with one `%s`; most: the largest difference of a part that a stand-in may have. */
 static void compare_stand_in(const char *family, const char *kind, const char *form,
-                             const char *parameters, const char *file, double most) {
+                             const char *parameters, const char *file, double max) {
   static char text[TEXT];
   scene_text(text, form, kind, parameters);
   vlScene *scene = need_scene(text);
   vlImage *again = image_of_stand_in(read_again(scene, file), text);
   vlImage *image = image_of_stand_in(scene, text);
   const double off = worst_part(image, again);
-  if (!(off <= most))
+  if (!(off <= max))
     broken(family, kind, "%s: what stands in for it in %s is off by %.3f", parameters, file,
            off);
   vl_image_destroy(again);

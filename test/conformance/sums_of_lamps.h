@@ -77,8 +77,7 @@ static void check_sum(const char *tracer, const char *sampler, unsigned on,
       whole += sum / (size * size);
     }
   snprintf(what, sizeof what, "%s: lamps 0x%x, off their sum of %.3f", sampler, on, whole);
-  check_mean("lights", tracer, what, &off, 0,
-             (Sight){sight.slack * whole, sight.least * whole});
+  check_mean("lights", tracer, what, &off, 0, (Sight){sight.slack * whole, sight.min * whole});
   vl_image_destroy(all);
 }
 

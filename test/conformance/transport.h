@@ -156,7 +156,7 @@ static void check_quarters(const char *name, const MediumCase *c, const vlImage 
                          passes_pixel(c, width, column, row));
     }
     snprintf(what, sizeof what, "light that passes in quarter %u, beyond the known", k);
-    check_mean("media", name, what, &off, 0, (Sight){.slack = 2e-3, .least = 0.035});
+    check_mean("media", name, what, &off, 0, (Sight){.slack = 2e-3, .min = 0.035});
   }
 }
 
@@ -213,13 +213,13 @@ static void check_channels(void) {
                                              i / vl_image_width(image), channel));
     snprintf(what, sizeof what, "absorption by channel: channel %u behind the box", channel);
     check_mean("media", "homogeneous", what, &passes, exp(-2 * scale * (double)sigma[channel]),
-               (Sight){.slack = 3e-3, .least = 0.03});
+               (Sight){.slack = 3e-3, .min = 0.03});
   }
   vl_image_destroy(image);
 }
 
 static void check_medium(const char *name, const MediumCase *c) {
-  const Sight sight = {.slack = 2e-3, .least = 0.02};
+  const Sight sight = {.slack = 2e-3, .min = 0.02};
   Mean kept = mean_medium(name, c, c->scatters);
   check_mean("media", name, "light that is kept", &kept, 1, sight);
   if (c->emits) {
@@ -228,7 +228,7 @@ static void check_medium(const char *name, const MediumCase *c) {
                c->emission > 0 ? c->emission : 1, sight);
     Mean glow = mean_spectral(name, c, c->emits);
     check_same_mean("media", name, "glow and surroundings, by wavelengths", &glow, &balance,
-                    (Sight){.slack = 3e-3, .least = 0.1});
+                    (Sight){.slack = 3e-3, .min = 0.1});
   }
   if (c->emits_by_cell) {
     Mean by_cell = mean_medium(name, c, c->emits_by_cell);
@@ -247,7 +247,7 @@ static void check_medium(const char *name, const MediumCase *c) {
   vl_image_destroy(scattering);
   Mean spectral = mean_spectral(name, c, c->absorbs);
   check_same_mean("media", name, "light that passes, by wavelengths", &spectral, &passes,
-                  (Sight){.slack = 3e-3, .least = 0.1});
+                  (Sight){.slack = 3e-3, .min = 0.1});
   if (c->transmittance > 0)
     check_mean("media", name, "light that passes", &passes, c->transmittance, sight);
   check_mean("media", name, "light that is not scattered, beyond what is not absorbed", &more,
@@ -410,7 +410,7 @@ static void check_room(const char *name, const vlImage *paths, const TracerCase 
 static void check_tracer(const char *name, const char *variant, const char *text, Plate plate,
                          const TracerCase *c) {
   vlImage *image = image_of(text, name, c->spp ? c->spp : 64);
-  double least = c->least_of_lamp > 0 && plate.ball != 0 ? c->least_of_lamp : 0.03;
+  double min = c->least_of_lamp > 0 && plate.ball != 0 ? c->least_of_lamp : 0.03;
   Mean off = {0};
   Mean known = {0};
   for (uint32_t y = 0; y < PLATE_SIDE; y++)
@@ -421,7 +421,7 @@ static void check_tracer(const char *name, const char *variant, const char *text
     }
   vl_image_destroy(image);
   double scale = mean_of(&known);
-  check_mean("tracers", name, variant, &off, 0, (Sight){0.001 * scale, least * scale});
+  check_mean("tracers", name, variant, &off, 0, (Sight){0.001 * scale, min * scale});
 }
 
 /* The sun stands above the plate: half of it. */

@@ -104,11 +104,11 @@ static void check_turned(const char *kind, const char *layer, const double alpha
   snprintf(what, sizeof what, "%sroughness %g, %g: share of samples with a density", layer,
            alpha[0], alpha[1]);
   check_same_mean("materials", kind, what, &a->dense, &b->dense,
-                  (Sight){.slack = 5e-3, .least = 0.1});
+                  (Sight){.slack = 5e-3, .min = 0.1});
   snprintf(what, sizeof what, "%sroughness %g, %g: light that is sent", layer, alpha[0],
            alpha[1]);
   check_same_mean("materials", kind, what, &a->weight, &b->weight,
-                  (Sight){.slack = 5e-3, .least = 0.25});
+                  (Sight){.slack = 5e-3, .min = 0.25});
   free_turned(a);
   free_turned(b);
 }

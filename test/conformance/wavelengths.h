@@ -41,7 +41,7 @@ typedef struct InBands {
   const char *rest;                    /* of the scene, after the form */
   double is[2];                        /* what the parameter is in the band and beside it */
   double slack;                        /* shares of the band's light */
-  double least;
+  double min;
   uint32_t spp;
 } InBands;
 
@@ -113,7 +113,7 @@ static void check_bands(const InBands *x) {
   char what[200];
   snprintf(what, sizeof what, "\"%s\" of %s in a band, by %s: off %.4f", x->parameter, x->kind,
            x->tracer, whole);
-  check_mean(x->family, x->name, what, &off, 0, (Sight){x->slack * whole, x->least * whole});
+  check_mean(x->family, x->name, what, &off, 0, (Sight){x->slack * whole, x->min * whole});
   vl_image_destroy(all);
   vl_image_destroy(parts[0]);
   vl_image_destroy(parts[1]);
@@ -150,7 +150,7 @@ static void check_material_bands(const vlKindRow *row) {
   x.kind = row->name;
   x.rest = BALL;
   x.slack = 0.03;
-  x.least = 0.2;
+  x.min = 0.2;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (!is_spectrum(p))
@@ -178,7 +178,7 @@ static void check_beside_floor(const char *family, const char *name, const char 
   x.rest = rest;
   x.is[0] = 0.7;
   x.slack = 0.002;
-  x.least = 0.03;
+  x.min = 0.03;
   x.spp = 64;
   check_bands(&x);
 }
@@ -201,7 +201,7 @@ static void check_medium_bands(const vlKindRow *row, const MediumCase *c) {
   x.spp = 96;
   x.is[1] = 50;
   x.slack = 0.03;
-  x.least = 0.2;
+  x.min = 0.2;
   for (int i = 0; i < 2; i++) {
     char base[TEXT];
     bool there = false;

@@ -296,11 +296,11 @@ static void whole_blocks_fit(void **state) {
   const size_t pixels = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK;
   for (int kind = 0; kind < KINDS; kind++) {
     const vlFilmDef def = film_def(kind);
-    const size_t most = vl_film_most_data(&def);
-    assert_true(most >= pixels * vl_film_pixel_size(&def));
+    const size_t max = vl_film_max_data(&def);
+    assert_true(max >= pixels * vl_film_pixel_size(&def));
     for (uint32_t format = 1; format <= 2; format++)
       for (int compared = 0; compared < 2; compared++)
-        assert_true(most >= vl_film_old_data_size(&def, format, pixels, compared));
+        assert_true(max >= vl_film_old_data_size(&def, format, pixels, compared));
   }
 }
 

@@ -167,7 +167,7 @@ static void distribution_counts(void **state) {
   const double independent = sqrt(1.0 / 12 / SPP);
   const struct {
     uint32_t strata;
-    double least, most; /* noise over that of independent samples */
+    double min, max; /* noise over that of independent samples */
   } rows[4] = {{1, 0.97, 1.08}, {2, 0.45, 0.60}, {4, 0.22, 0.30}, {8, 0.11, 0.15}};
   for (int k = 0; k < 4; k++) {
     double error;
@@ -177,7 +177,7 @@ static void distribution_counts(void **state) {
       if (!(noise > error))
         fail_msg("%u strata: noise %g, error %g", rows[k].strata, noise, error);
       noise /= independent;
-      if (!(noise > rows[k].least && noise < rows[k].most))
+      if (!(noise > rows[k].min && noise < rows[k].max))
         fail_msg("%u strata: %g", rows[k].strata, noise);
     }
     vl_film_destroy(film);

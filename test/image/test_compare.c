@@ -210,7 +210,7 @@ static void direct(const float *a, const float *b, double *flip) {
   double g[3], u[3];
   hunt(pure_green, g);
   hunt(pure_blue, u);
-  double most = pow(hyab(g, u), 0.7), knee = 0.4 * most;
+  double max = pow(hyab(g, u), 0.7), knee = 0.4 * max;
   for (int n = 0; n < W * H; n++) {
     int y = n / W, x = n % W;
     double lab[2][3];
@@ -225,7 +225,7 @@ static void direct(const float *a, const float *b, double *flip) {
       hunt(c, lab[k]);
     }
     double d = pow(hyab(lab[0], lab[1]), 0.7);
-    d = d < knee ? 0.95 / knee * d : 0.95 + (d - knee) / (most - knee) * 0.05;
+    d = d < knee ? 0.95 / knee * d : 0.95 + (d - knee) / (max - knee) * 0.05;
     double f = fmax(fabs(edge[0][y][x] - edge[1][y][x]), fabs(point[0][y][x] - point[1][y][x]));
     flip[n] = pow(d, 1 - sqrt(f / sqrt(2)));
   }

@@ -140,7 +140,7 @@ static void test_attributes_suit(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  const double large = INT32_MAX / 2, most = large - 1;
+  const double large = INT32_MAX / 2, max = large - 1;
   const struct {
     vlAttribute attribute;
     bool suits;
@@ -156,7 +156,7 @@ static void test_attributes_suit(void **state) {
       {{"screenWindowCenter", VL_ATTRIBUTE_V2F, {-3, 4}, NULL}, true},
       {{"screenWindowCenter", VL_ATTRIBUTE_V3F, {-3, 4}, NULL}, false},
       {{"displayWindow", VL_ATTRIBUTE_BOX2I, {5, 6, 5, 6}, NULL}, true},
-      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {-most, -most, most, most}, NULL}, true},
+      {{"displayWindow", VL_ATTRIBUTE_BOX2I, {-max, -max, max, max}, NULL}, true},
       {{"displayWindow", VL_ATTRIBUTE_BOX2I, {0, 0, large, 1}, NULL}, false},
       {{"displayWindow", VL_ATTRIBUTE_BOX2I, {0, -large, 1, 1}, NULL}, false},
       {{"displayWindow", VL_ATTRIBUTE_BOX2I, {1, 0, 0, 1}, NULL}, false},

@@ -429,15 +429,15 @@ static void completion(void **state) {
   assert_int_equal(l.scene->shapes.count, 2);
   vlCamera camera;
   assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, NULL), VL_OK);
-  double most = 0;
+  double max = 0;
   for (int k = 0; k < 4; k++) {
     double point[3] = {100 + 30.0 * (k & 1), 7 + 2.0 * (k >> 1), -3}, pixel[2];
     assert_true(vl_camera_project(&camera, point, pixel, NULL));
     double x = fabs(pixel[0] / 150 - 1), y = fabs(pixel[1] / 100 - 1);
     assert_true(x < 0.93 && y < 0.93);
-    most = fmax(most, fmax(x, y));
+    max = fmax(max, fmax(x, y));
   }
-  assert_true(most > 0.8);
+  assert_true(max > 0.8);
   end_load(&l);
   free(g);
 }

@@ -5,8 +5,8 @@
 #include "import/gltf_load.h"
 #include "velo/shape.h"
 
-static void is_near(double a, double b, double most) {
-  if (!(fabs(a - b) <= most))
+static void is_near(double a, double b, double max) {
+  if (!(fabs(a - b) <= max))
     fail_msg("%.9g is not %.9g", a, b);
 }
 

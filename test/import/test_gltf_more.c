@@ -11,8 +11,8 @@
 #include "velo/shape.h"
 #include "velo/texture.h"
 
-static void is_near(double a, double b, double most) {
-  if (!(fabs(a - b) <= most))
+static void is_near(double a, double b, double max) {
+  if (!(fabs(a - b) <= max))
     fail_msg("%.9g is not %.9g", a, b);
 }
 

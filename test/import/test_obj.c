@@ -88,9 +88,9 @@ static void corners(void **state) {
 }
 
 /* Twice the area of all triangles seen along z, and the smallest one. */
-static double area(const vlShapeDef *d, double *least) {
+static double area(const vlShapeDef *d, double *min) {
   double sum = 0;
-  *least = 1e9;
+  *min = 1e9;
   for (uint32_t f = 0; f < d->faces; f++) {
     const float *p[3];
     for (int k = 0; k < 3; k++)
@@ -98,7 +98,7 @@ static double area(const vlShapeDef *d, double *least) {
     double a = ((double)p[1][0] - p[0][0]) * ((double)p[2][1] - p[0][1]) -
                ((double)p[1][1] - p[0][1]) * ((double)p[2][0] - p[0][0]);
     sum += a;
-    *least = a < *least ? a : *least;
+    *min = a < *min ? a : *min;
   }
   return sum;
 }
@@ -113,11 +113,11 @@ static void polygons(void **state) {
                {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6\n", 10.0}};
   for (size_t i = 0; i < 2; i++) {
     Loaded l;
-    double least;
+    double min;
     load_obj(&l, cases[i].text);
     assert_int_equal(l.result, VL_OK);
-    assert_float_equal(area(&l.scene->shapes.items[0], &least), cases[i].twice, 1e-6);
-    assert_true(least > 0);
+    assert_float_equal(area(&l.scene->shapes.items[0], &min), cases[i].twice, 1e-6);
+    assert_true(min > 0);
     end_load(&l);
   }
 }

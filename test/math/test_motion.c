@@ -19,10 +19,10 @@ static vlMat4 random_turn(uint32_t *state, double angle) {
 }
 
 static double farthest(const double *a, const double *b, int n) {
-  double most = 0;
+  double max = 0;
   for (int i = 0; i < n; i++)
-    most = fmax(most, fabs(a[i] - b[i]));
-  return most;
+    max = fmax(max, fabs(a[i] - b[i]));
+  return max;
 }
 
 static void ends_are_met(void **unused) {

@@ -256,14 +256,14 @@ static void check_colors(vlContext *context, const float *rows, const char *name
   assert_int_equal(vl_spectrum_tabulate(&spectrum, VL_PARAMETER_UNBOUNDED, light, NULL), VL_OK);
   see(xyz, 1, 3, light, -1, white);
   see(sensitivities, VL_SPECTRUM_VALUES, 1, light, -1, full);
-  double most = fmax(full[0], fmax(full[1], full[2]));
+  double max = fmax(full[0], fmax(full[1], full[2]));
   vlRawDef def = vl_default_raw_def(PATCHES * PATCH, PATCH);
   def.bits = 16;
   def.white = 65000;
   for (int i = 0; i < 4; i++)
     def.black[i] = 512;
   assert_int_equal(vl_raw_match_color(&def, sensitivities, light, NULL), VL_OK);
-  vlRaw *raw = shoot(context, &def, sensitivities, light, most);
+  vlRaw *raw = shoot(context, &def, sensitivities, light, max);
   vlImage *image = develop(raw, VL_RAW_STEP_COLOR);
   for (int p = 0; p < PATCHES; p++) {
     double seen[3], truth[3], got[3], a[3], b[3], one[3];

@@ -2,11 +2,11 @@
  * whole, others are unchanged. */
 #include "render/shots.h"
 
-static Image sky(float radiance, float most, vlColorMode mode) {
+static Image sky(float radiance, float max, vlColorMode mode) {
   Stage s = stage_open(8, 8);
   s.build.color = mode;
   s.render.spp = 64;
-  s.film.max_component = most;
+  s.film.max_component = max;
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   def.color = vl_spectrum_rgb(radiance, radiance, radiance);
   vl_scene_add_light(s.scene, &def);

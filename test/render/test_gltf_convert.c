@@ -62,7 +62,7 @@ static void both_ways(const Gltf *g, const char *rest, Image *own, Image *writte
 static void balls(void **state) {
   (void)state;
   static const struct {
-    double base, metal, rough, most;
+    double base, metal, rough, max;
   } cases[] = {{0.5, 0, 0.1, 0.03}, {0.8, 0, 0.3, 0.05},  {0.2, 0, 0.2, 0.03},
                {0.5, 0, 0.6, 0.03}, {0.05, 0, 0.6, 0.03}, {0.7, 1, 0.2, 0.03},
                {0.7, 1, 0.6, 0.03}, {0.7, 1, 0.8, 0.04},  {0.1, 1, 0.4, 0.03}};
@@ -79,7 +79,7 @@ static void balls(void **state) {
              cases[i].base, cases[i].base, cases[i].base, cases[i].metal, cases[i].rough);
     Image own, written;
     both_ways(g, rest, &own, &written);
-    assert_near("ball", image_mean(&written, 1), image_mean(&own, 1), cases[i].most);
+    assert_near("ball", image_mean(&written, 1), image_mean(&own, 1), cases[i].max);
     image_free(&own);
     image_free(&written);
   }

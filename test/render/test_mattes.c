@@ -144,12 +144,12 @@ static void test_modes(void **state) {
   fill(&s);
   s.camera.lens_radius = 0;
   uint32_t channels = VL_CHANNEL_ALL | VL_CHANNEL_CRYPTO_OBJECT;
-  GroundTruth most = ground_truth_take(&s, channels, VL_CHANNEL_MODE_COVERAGE);
+  GroundTruth max = ground_truth_take(&s, channels, VL_CHANNEL_MODE_COVERAGE);
   GroundTruth near = ground_truth_take(&s, channels, VL_CHANNEL_MODE_NEAREST);
   uint32_t moved = 0, differ = 0;
   for (uint32_t y = 0; y < 31; y++)
     for (uint32_t x = 0; x < 41; x++) {
-      const GroundTruth *both[2] = {&most, &near};
+      const GroundTruth *both[2] = {&max, &near};
       for (int k = 0; k < 2; k++) { /* all channels are of one ray through one film point */
         const float *film = place(both[k], x, y, "film.X"), *p = place(both[k], x, y, "P.X");
         double o[3], d[3], pixel[2], z, point[3] = {p[0], p[1], p[2]};
@@ -165,18 +165,18 @@ static void test_modes(void **state) {
         assert_near("x", pixel[0], x + (double)film[0], 1e-4);
         assert_near("y", pixel[1], y + (double)film[1], 1e-4);
       }
-      assert_true(*place(&near, x, y, "Z") <= *place(&most, x, y, "Z") * (1 + 1e-6f));
-      differ += id(&near, x, y, "id.object") != id(&most, x, y, "id.object");
-      uint32_t object = id(&most, x, y, "id.object"), first;
-      memcpy(&first, place(&most, x, y, "CryptoObject00.R"), sizeof first);
-      bool alone = *place(&most, x, y, "CryptoObject00.G") > 0.51f;
+      assert_true(*place(&near, x, y, "Z") <= *place(&max, x, y, "Z") * (1 + 1e-6f));
+      differ += id(&near, x, y, "id.object") != id(&max, x, y, "id.object");
+      uint32_t object = id(&max, x, y, "id.object"), first;
+      memcpy(&first, place(&max, x, y, "CryptoObject00.R"), sizeof first);
+      bool alone = *place(&max, x, y, "CryptoObject00.G") > 0.51f;
       char name[32];
       snprintf(name, sizeof name, "%s.%u", object == 3 ? "sphere" : "triangles", object);
       if (alone && object != 3)
         assert_int_equal(first, object ? vl_cryptomatte_hash(name) : 0);
     }
   assert_true(moved > 1000 && differ > 5);
-  ground_truth_free(&most);
+  ground_truth_free(&max);
   ground_truth_free(&near);
   stage_close(&s);
 }

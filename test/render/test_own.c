@@ -228,15 +228,15 @@ static void no_rays(void **state) {
 
 typedef struct Seen {
   pthread_mutex_t mutex;
-  uint32_t most;
+  uint32_t max;
   double u_low, u_high, time_low, time_high;
 } Seen;
 static void look(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {
   Seen *s = user;
   pinhole_rays(&of_small, points, rays);
   pthread_mutex_lock(&s->mutex);
-  if (points->count > s->most)
-    s->most = points->count;
+  if (points->count > s->max)
+    s->max = points->count;
   for (uint32_t i = 0; i < points->count; i++) {
     s->u_low = fmin(s->u_low, fmin(points->lens_u[i], points->lens_v[i]));
     s->u_high = fmax(s->u_high, fmax(points->lens_u[i], points->lens_v[i]));
@@ -259,7 +259,7 @@ static void what_it_gets(void **state) {
     if (lens)
       s.camera.readout = 1;
     Image p = stage_finish(&s);
-    assert_in_range(seen.most, 100, VL_OWN_BATCH);
+    assert_in_range(seen.max, 100, VL_OWN_BATCH);
     if (!lens)
       assert_true(seen.u_low == 0.5 && seen.u_high == 0.5);
     if (lens)

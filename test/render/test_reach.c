@@ -69,10 +69,10 @@ static double mean_of(const Material *m, int where, vlLightSampler sampler, doub
   s.render.max_depth = m->shape == slab ? 3 : 1;
   s.render.tracer = VL_TRACER_PATH;
   Image p = stage_finish(&s);
-  double mean = image_mean(&p, 1), most = 0;
+  double mean = image_mean(&p, 1), max = 0;
   for (uint32_t i = 0; i < SIZE * SIZE; i++)
-    most = fmax(most, p.rgba[4 * i + 1]);
-  *noise = mean > 0 ? most / mean : 0;
+    max = fmax(max, p.rgba[4 * i + 1]);
+  *noise = mean > 0 ? max / mean : 0;
   image_free(&p);
   return mean;
 }
@@ -82,9 +82,9 @@ static void every_light_is_asked(void **state) {
   for (size_t i = 0; i < sizeof materials / sizeof *materials; i++)
     for (int where = 0; where < 3; where++) {
       const Material *m = &materials[i];
-      double most_tree, most_power;
-      double tree = mean_of(m, where, VL_LIGHT_SAMPLER_BVH, &most_tree);
-      double power = mean_of(m, where, VL_LIGHT_SAMPLER_POWER, &most_power);
+      double max_tree, max_power;
+      double tree = mean_of(m, where, VL_LIGHT_SAMPLER_BVH, &max_tree);
+      double power = mean_of(m, where, VL_LIGHT_SAMPLER_POWER, &max_power);
       char what[100];
       snprintf(what, sizeof what, "%s, lights %s", m->name,
                where == 0   ? "behind"
@@ -94,8 +94,8 @@ static void every_light_is_asked(void **state) {
       if (dark != !(power > 1e-6))
         fail_msg("%s: %g by power", what, power);
       assert_near(what, tree, power, 0.04 * power);
-      if (most_tree > 2 * most_power + 1)
-        fail_msg("%s: a pixel of %g times the mean", what, most_tree);
+      if (max_tree > 2 * max_power + 1)
+        fail_msg("%s: a pixel of %g times the mean", what, max_tree);
     }
 }
 

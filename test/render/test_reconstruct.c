@@ -157,14 +157,14 @@ static void border(void **state) {
     for (int i = 0; i < 40000; i++) {
       uint32_t u = (uint32_t)(random_number() * (float)(block.width + 2 * b[0]));
       uint32_t v = (uint32_t)(random_number() * (float)(block.height + 2 * b[1]));
-      float x = random_number(), y = random_number(), most = 0;
+      float x = random_number(), y = random_number(), max = 0;
       for (uint32_t j = b[1]; j < b[1] + block.height; j++)
         for (uint32_t l = b[0]; l < b[0] + block.width; l++)
-          most = fmaxf(most, vl_shared_weight(&r, x, y, (int32_t)l - (int32_t)u,
-                                              (int32_t)j - (int32_t)v));
+          max = fmaxf(max, vl_shared_weight(&r, x, y, (int32_t)l - (int32_t)u,
+                                            (int32_t)j - (int32_t)v));
       bool counts = vl_shared_counts(&r, &block, u, v, x, y);
-      if (counts != (most > 0))
-        fail_msg("filter %d at %u, %u: weight %g, counts %d", k, u, v, (double)most, counts);
+      if (counts != (max > 0))
+        fail_msg("filter %d at %u, %u: weight %g, counts %d", k, u, v, (double)max, counts);
       skipped += !counts;
     }
     if (r.skips != (skipped > 0))

@@ -30,14 +30,14 @@ static void expected_of(const char *name, double kelvin, const double *spectrum,
 
 /* A black body's light, of luminance 1, all over. */
 static Image see_light(const char *sensor, double white, float kelvin, vlColorMode color,
-                       float most) {
+                       float max) {
   Stage s = stage_open(8, 8);
   s.build.color = color;
   s.render.spp = 1024;
-  s.render.same_wavelengths = most < INFINITY;
+  s.render.same_wavelengths = max < INFINITY;
   s.film.sensor = sensor;
   s.film.white_balance = white;
-  s.film.max_component = most;
+  s.film.max_component = max;
   vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
   def.color = vl_spectrum_blackbody(kelvin);
   assert_int_not_equal(vl_scene_add_light(s.scene, &def).index, 0);
@@ -64,10 +64,10 @@ static void colour_of_light(void **state) {
     for (int c = 0; c < 3; c++)
       assert_ratio(sensors[n], image_mean(&p, c), rgb[c], 5e-3);
     Image eye = see_light(NULL, whites[n], 2200, VL_COLOR_SPECTRAL, INFINITY);
-    double most = 0; /* it is not the observer's colour */
+    double max = 0; /* it is not the observer's colour */
     for (int c = 0; c < 3; c++)
-      most = fmax(most, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
-    assert_true(most > 0.01);
+      max = fmax(max, fabs(image_mean(&p, c) / image_mean(&eye, c) - 1));
+    assert_true(max > 0.01);
     image_free(&p);
     image_free(&eye);
   }
@@ -78,7 +78,7 @@ static void colour_of_light(void **state) {
 static void limited(void **state) {
   (void)state;
   static float observer[4 * COUNT];
-  double m[9], to[9], whole[9], back[9], most = 0;
+  double m[9], to[9], whole[9], back[9], max = 0;
   float rgb_from_xyz[9];
   vl_sensor_make(vl_sensor_find("nikon_d850"), 5000, VL_SPACE_SRGB, observer, m);
   vl_rgb_from_xyz(VL_SPACE_SRGB, rgb_from_xyz);
@@ -88,9 +88,9 @@ static void limited(void **state) {
   vl_mat3_inverse(whole, back);
   Image p = see_light("nikon_d850", 5000, 2200, VL_COLOR_SPECTRAL, 0.125f);
   for (int k = 0; k < 3; k++)
-    most = fmax(most, back[3 * k] * image_mean(&p, 0) + back[3 * k + 1] * image_mean(&p, 1) +
-                          back[3 * k + 2] * image_mean(&p, 2));
-  assert_ratio("largest value", most, 0.125, 1e-4);
+    max = fmax(max, back[3 * k] * image_mean(&p, 0) + back[3 * k + 1] * image_mean(&p, 1) +
+                        back[3 * k + 2] * image_mean(&p, 2));
+  assert_ratio("largest value", max, 0.125, 1e-4);
   image_free(&p);
 }
 

@@ -16,12 +16,12 @@ enum { SIZE = 48, RACE_SAMPLES = 8 };
 static void by_numbers(void **state) {
   (void)state;
   const double base[6] = {9, 9, 9, 1, 2, 3}, odds = 0.02;
-  vlTails tails = {.width = 2, .height = 1, .base = base, .least = 0, .rare = 10, .most = 1e9};
+  vlTails tails = {.width = 2, .height = 1, .base = base, .min = 0, .rare = 10, .max = 1e9};
   const float x = 1.5f, y = 0.5f, given = (float)odds;
   /* f / q and f / p, relative to base: the same for all */
   double q = 0.3 * (1 + odds), p = 0.3 * (1 + odds) / odds;
   struct {
-    double rare, most, expected;
+    double rare, max, expected;
   } cases[] = {
       {10, 1e9, q * p},
       {p * 1.01, 1e9, 0}, /* not rare */
@@ -31,7 +31,7 @@ static void by_numbers(void **state) {
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     float r = 0.3f, g = 0.6f, b = 0.9f;
     tails.rare = cases[k].rare;
-    tails.most = cases[k].most;
+    tails.max = cases[k].max;
     vl_tails_measure(&tails, 1, &x, &y, &given, (float *const[3]){&r, &g, &b});
     assert_near("second moment", (double)r, cases[k].expected, 1e-5 * q * p);
     assert_near("its square", (double)g / VL_TAIL_SQUARES,

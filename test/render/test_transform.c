@@ -95,12 +95,12 @@ static void expect_same(const char *text, double within) {
   if (vl_scene_transform(scene, similarity, &error) != VL_OK)
     fail_msg("transform: %s", error.message);
   means_of(context, scene, similarity, after);
-  double most = 0;
+  double max = 0;
   for (int i = 0; i < 3 * BANDS; i++)
-    most = fmax(most, before[i]);
-  assert_true(most > 0.01);
+    max = fmax(max, before[i]);
+  assert_true(max > 0.01);
   for (int i = 0; i < 3 * BANDS; i++)
-    if (!(fabs(after[i] - before[i]) <= within * (before[i] + 0.1 * most)))
+    if (!(fabs(after[i] - before[i]) <= within * (before[i] + 0.1 * max)))
       fail_msg("%.200s: band %d, channel %d: %.6f before, %.6f after",
                text + (strlen(text) > 300 ? 128 : 0), i / 3, i % 3, before[i], after[i]);
   vl_scene_destroy(scene);

@@ -40,7 +40,7 @@ static void project(const Model *m, const double p[3], double image[2]) {
 /* The larger side of the rectangle that a box takes in the image: 2 is the image's height. */
 static double size_in_image(const Model *m, const float low[3], const float high[3],
                             bool *whole) {
-  double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+  double min[2] = {INFINITY, INFINITY}, max[2] = {-INFINITY, -INFINITY};
   const double aspect = 1.5;
   for (int k = 0; k < 8; k++) {
     const double p[3] = {(double)(k & 1 ? high[0] : low[0]), (double)(k & 2 ? high[1] : low[1]),
@@ -48,12 +48,12 @@ static double size_in_image(const Model *m, const float low[3], const float high
     double q[2];
     project(m, p, q);
     for (int i = 0; i < 2; i++) {
-      least[i] = fmin(least[i], q[i]);
-      most[i] = fmax(most[i], q[i]);
+      min[i] = fmin(min[i], q[i]);
+      max[i] = fmax(max[i], q[i]);
     }
   }
-  *whole = least[0] > -aspect && most[0] < aspect && least[1] > -1 && most[1] < 1;
-  return fmax(most[0] - least[0], most[1] - least[1]);
+  *whole = min[0] > -aspect && max[0] < aspect && min[1] > -1 && max[1] < 1;
+  return fmax(max[0] - min[0], max[1] - min[1]);
 }
 
 static const float low[3] = {-1, 0, -0.6f}, high[3] = {1, 1.5f, 0.6f};

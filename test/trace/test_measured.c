@@ -34,15 +34,15 @@ static void put_surface(Batch *b, const vlMeasured *m, uint32_t n) {
 
 /* Sets random directions on both sides of the surface for lane i, within the cone of cos >
  * least. */
-static void put_random(Batch *b, uint32_t n, statRng *rng, double least) {
+static void put_random(Batch *b, uint32_t n, statRng *rng, double min) {
   for (uint32_t i = 0; i < n; i++) {
     double o[3], w[3];
     do
       stat_direction(rng, o);
-    while (fabs(o[2]) < least);
+    while (fabs(o[2]) < min);
     do
       stat_direction(rng, w);
-    while (fabs(w[2]) < least || o[2] * w[2] < 0);
+    while (fabs(w[2]) < min || o[2] * w[2] < 0);
     b->ox[i] = (float)o[0];
     b->oy[i] = (float)o[1];
     b->oz[i] = (float)o[2];

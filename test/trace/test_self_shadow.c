@@ -322,8 +322,8 @@ static void destroy(Scene *s) {
 /* ---- rays that leave --------------------------------------------------------------------- */
 
 /* 10^-k, k uniform in [0, most). */
-static double small(statRng *rng, double most) {
-  return pow(10, -most * stat_double(rng));
+static double small(statRng *rng, double max) {
+  return pow(10, -max * stat_double(rng));
 }
 
 typedef struct Hit {
@@ -414,8 +414,8 @@ static uint32_t passing(const Scene *s, statRng *rng, uint32_t *tried) {
     aim(s, time, rng, &o, &d);
     if (in_plane(s, o))
       continue;
-    int crossed = 0, most = s->kind->flat ? 1 : 2;
-    for (; crossed <= most; crossed++) {
+    int crossed = 0, max = s->kind->flat ? 1 : 2;
+    for (; crossed <= max; crossed++) {
       Hit h;
       vlRays ray = {
           &o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &t_min, NULL, s->world->moves ? &time : NULL,
@@ -429,7 +429,7 @@ static uint32_t passing(const Scene *s, statRng *rng, uint32_t *tried) {
       t_min = vl_past_surface(&at, d, t_min);
     }
     *tried += crossed > 0;
-    twice += crossed > most;
+    twice += crossed > max;
   }
   return twice;
 }
@@ -488,13 +488,13 @@ static float bound_of_corners(const vlWorld *world, const Hit *h, vlVec3 g) {
   if (!s->triangles || h->instance == VL_NONE || world->moves)
     return 0;
   const float *error = world->instances.items[h->instance].error;
-  float most = 0;
+  float max = 0;
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)s->indices[3 * (size_t)h->prim + (size_t)k];
-    most = fmaxf(most, error[0] * fabsf(x[0]) + error[1] * fabsf(x[1]) +
-                           error[2] * fabsf(x[2]) + error[3]);
+    max = fmaxf(max, error[0] * fabsf(x[0]) + error[1] * fabsf(x[1]) + error[2] * fabsf(x[2]) +
+                         error[3]);
   }
-  return most * (fabsf(g.x) + fabsf(g.y) + fabsf(g.z));
+  return max * (fabsf(g.x) + fabsf(g.y) + fabsf(g.z));
 }
 
 /* The points of a batch, those that media ask for, and single points have the same distances,

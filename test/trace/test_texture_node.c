@@ -65,14 +65,14 @@ static vlShapeDef triangle(void) {
 /* ---- both evaluators --------------------------------------------------------------------- */
 
 /* least 1: white. */
-static vlImage *image_of(Fixture *f, statRng *rng, float least) {
+static vlImage *image_of(Fixture *f, statRng *rng, float min) {
   vlImageDef def = vl_default_image_def(8, 4, 3);
   def.type = VL_PIXEL_F32;
   vlImage *image;
   assert_int_equal(vl_image_create(f->context, &def, &image), VL_OK);
   float *pixels = vl_image_pixels(image);
   for (int i = 0; i < 8 * 4 * 3; i++)
-    pixels[i] = least + (1 - least) * stat_float(rng);
+    pixels[i] = min + (1 - min) * stat_float(rng);
   return image;
 }
 
@@ -162,17 +162,17 @@ static void same_bits(void **state) {
       vl_texture_float(&run, node, out);
       assert_int_equal(run.top, 0);
     }
-    float least = INFINITY, most = -INFINITY;
+    float min = INFINITY, max = -INFINITY;
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       float one = vl_texture_float_at(f.world, node, &queries[i]);
       if (memcmp(&one, &out[i], sizeof one))
         fail_msg("node kind %d: %.9g alone, %.9g in a batch",
                  (int)f.world->nodes.items[node].kind, (double)one, (double)out[i]);
-      least = fminf(least, one);
-      most = fmaxf(most, one);
+      min = fminf(min, one);
+      max = fmaxf(max, one);
     }
     bool constant = f.world->nodes.items[node].kind == VL_TEXTURE_CONSTANT;
-    assert_true(constant ? most == least : most > least);
+    assert_true(constant ? max == min : max > min);
   }
   end(&f);
 }

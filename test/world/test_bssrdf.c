@@ -210,12 +210,12 @@ static void there_and_back(void **state) {
   const float etas[] = {0.7f, 1.0f, 1.33f, 2.0f, 2.5f};
   for (int k = 0; k < 5; k++) {
     Setup s = setup(etas[k], 0);
-    float most = s.table->effective[VL_BSSRDF_ALBEDOS - 1];
+    float max = s.table->effective[VL_BSSRDF_ALBEDOS - 1];
     for (float e = 0; e < 1.1f; e += 0.007f) {
       float albedo = vl_bssrdf_invert(s.table, e);
       vlSpline a = vl_bssrdf_albedo(s.table, albedo);
       assert_true(albedo >= 0 && albedo <= 1);
-      assert_within("back", (double)vl_bssrdf_effective(s.table, &a), (double)fminf(e, most),
+      assert_within("back", (double)vl_bssrdf_effective(s.table, &a), (double)fminf(e, max),
                     2e-4);
     }
     teardown(&s);
@@ -238,8 +238,8 @@ static void plain(void **state) {
   for (uint32_t i = 1; i < VL_BSSRDF_ALBEDOS; i++)
     assert_true(a.table->effective[i] > a.table->effective[i - 1]);
   assert_true(a.table->effective[0] == 0);
-  float most = a.table->effective[VL_BSSRDF_ALBEDOS - 1];
-  assert_true(most > 0.97f && most < 1.03f);
+  float max = a.table->effective[VL_BSSRDF_ALBEDOS - 1];
+  assert_true(max > 0.97f && max < 1.03f);
   teardown(&a);
   teardown(&b);
 }

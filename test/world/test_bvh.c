@@ -274,8 +274,8 @@ static int meets(const float *const c[3], const float o[3], const float d[3],
   double slow = length * 16 * (near + EPSILON * longest) * longest,
          low = reach * slow + 8 * near * longest * longest;
   double wide = beside + 2 * EPSILON * fabs(u[0] + u[1] + u[2]);
-  double least = fmin(u[0], fmin(u[1], u[2])), most = fmax(u[0], fmax(u[1], u[2]));
-  if (least < -wide && most > wide)
+  double min = fmin(u[0], fmin(u[1], u[2])), max = fmax(u[0], fmax(u[1], u[2]));
+  if (min < -wide && max > wide)
     return 0;
   at[0] = -INFINITY;
   at[1] = INFINITY;
@@ -285,7 +285,7 @@ static int meets(const float *const c[3], const float o[3], const float d[3],
          error = (low + fabs(t) * slow) / (fabs(speed) - slow) + 8 * EPSILON * fabs(t);
   at[0] = t - error;
   at[1] = t + error;
-  return least > beside || most < -beside ? 2 : 1;
+  return min > beside || max < -beside ? 2 : 1;
 }
 
 static void judge_shape(const vlWorld *w, uint32_t k, uint32_t instance, uint32_t index,

@@ -261,7 +261,7 @@ static void takes_no_more_than_its_size(void **state) {
   static const struct {
     void (*damage)(unsigned char *grid);
     const char *word;
-    size_t most; /* bytes; the file itself, the grid and the arrays while they grow */
+    size_t max; /* bytes; the file itself, the grid and the arrays while they grow */
   } cases[] = {{share_lower_nodes, "damaged", 1 << 20},
                {share_leaves, "damaged", 3 << 19},
                {fill_root, "fills too much space", 80u << 20},
@@ -275,7 +275,7 @@ static void takes_no_more_than_its_size(void **state) {
     const vlResult r = load_within(file, size, 0, &peak, &error, NULL);
     if (r != VL_ERROR_SCENE || !strstr(error.message, cases[i].word))
       fail_msg("%zu: %d, %s", i, r, error.message);
-    if (peak > cases[i].most)
+    if (peak > cases[i].max)
       fail_msg("%zu: %zu bytes", i, peak);
     free(file);
     free(grid);

@@ -147,17 +147,17 @@ static void choose_points(State *s) {
   const Seen *seen = &s->seen;
   for (int k = 0; k < DEFAULT_POINTS; k++) {
     uint32_t best = 0;
-    double least = INFINITY;
+    double min = INFINITY;
     for (uint32_t i = 0; i < seen->count; i++) {
       double d =
           hypot(seen->pixels[2 * i] - targets[k][0], seen->pixels[2 * i + 1] - targets[k][1]);
       d += 2 * fmax(0, seen->depths[i] / seen->middle - 1);
-      if (d < least) {
-        least = d;
+      if (d < min) {
+        min = d;
         best = i;
       }
     }
-    if (!(least < INFINITY))
+    if (!(min < INFINITY))
       return;
     memcpy(s->points + 3 * k, seen->points + 3 * (size_t)best, 3 * sizeof(double));
     s->def.point_count = (uint32_t)k + 1;

@@ -51,9 +51,9 @@ vlResult draw_look(const vlWorld *world, const vlCamera *camera, Seen *seen, vlE
   enum { SIDE = 64 };
   vlCamera small;
   memset(seen, 0, sizeof *seen);
-  uint32_t w = camera->width, h = camera->height, most = w > h ? w : h;
-  w = w * SIDE / most ? w * SIDE / most : 1;
-  h = h * SIDE / most ? h * SIDE / most : 1;
+  uint32_t w = camera->width, h = camera->height, max = w > h ? w : h;
+  w = w * SIDE / max ? w * SIDE / max : 1;
+  h = h * SIDE / max ? h * SIDE / max : 1;
   TRY_RESULT(vl_camera_resize(camera, w, h, &small));
   vlChannelsDef def = vl_default_channels_def(w, h);
   def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P;

@@ -67,11 +67,11 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
 }
 
 static int print(State *s, const OptionValue *v) {
-  uint32_t count = s->traced.paths->count, most = option_count(&v[PATHS_SHOW], 16);
+  uint32_t count = s->traced.paths->count, max = option_count(&v[PATHS_SHOW], 16);
   const PathsReport report = {.file = s->in.job.path,
                               .world = s->in.world,
                               .traced = &s->traced,
-                              .shown = count < most ? count : most};
+                              .shown = count < max ? count : max};
   if (v[PATHS_JSON].given) {
     Json *json = json_open();
     paths_put_json(json, &report);

@@ -30,10 +30,10 @@ enum {
 enum {
   DEFAULT_POSES = 16,
   DEFAULT_SPP = 144,
-  LEAST_CORNERS = 12 /* fewer do not cover an image: nothing is verified */
+  MIN_CORNERS = 12 /* fewer do not cover an image: nothing is verified */
 };
 static const double default_threshold = 0.05; /* pixels */
-static const double least_found = 0.9;        /* share of the corners that should be found */
+static const double min_found = 0.9;          /* share of the corners that should be found */
 
 static const Choice target_choices[] = {{"chessboard", 0}, {"charuco", 1}, {0}};
 
@@ -60,7 +60,7 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   const Measure *m = &v->all;
   if (v->placed == 0)
     snprintf(text, size, "the camera sees nothing, or too little for a board anywhere");
-  else if (m->found < LEAST_CORNERS || m->found < least_found * m->expected)
+  else if (m->found < MIN_CORNERS || m->found < min_found * m->expected)
     snprintf(text, size,
              "only %u of %u corners are in the images where the camera should show them",
              m->found, m->expected);
@@ -70,8 +70,8 @@ static const char *verdict(const Verification *v, double threshold, char *text, 
   else if (m->unseen)
     snprintf(text, size, "%u of %u corners in the images cannot be seen by the other camera",
              m->unseen, m->found);
-  else if (!(m->most <= threshold))
-    snprintf(text, size, "%.4g pixels are more than %g", m->most, threshold);
+  else if (!(m->max <= threshold))
+    snprintf(text, size, "%.4g pixels are more than %g", m->max, threshold);
   else
     return NULL;
   return text;
@@ -117,7 +117,7 @@ static void print_text(const Verification *v, const char *path, const char *agai
   for (uint32_t i = 0; i < v->placed; i++) {
     const Measure *p = &v->each[i];
     printf("%4u  %3u/%-3u  %10.5f %10.5f  %.1f, %.1f\n", i, p->found, p->expected,
-           mean_of(p->sum, p), p->most, p->at_x, p->at_y);
+           mean_of(p->sum, p), p->max, p->at_x, p->at_y);
   }
   if (m->found > m->unseen) {
     uint32_t covered, seeing = count_cells(v, &covered);
@@ -125,7 +125,7 @@ static void print_text(const Verification *v, const char *path, const char *agai
         "\n"
         "all   %u of %u corners: mean %.5f, root mean square %.5f, maximum %.5f pixels (pose "
         "%u, at %.1f, %.1f)\n",
-        m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->most, m->pose,
+        m->found, m->expected, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)), m->max, m->pose,
         m->at_x, m->at_y);
     printf("shift found - projected, mean: %+.5f, %+.5f pixels%s\n", mean_of(m->sum_x, m),
            mean_of(m->sum_y, m),
@@ -144,8 +144,8 @@ static void print_text(const Verification *v, const char *path, const char *agai
 static void print_measure(Json *json, const Measure *m) {
   json_put(json, "expected %u, found %u, unseen %u, mean %g, rms %g", m->expected, m->found,
            m->unseen, mean_of(m->sum, m), sqrt(mean_of(m->sum2, m)));
-  json_put(json, "max %g, max_x %g, max_y %g, shift_x %g, shift_y %g", m->most, m->at_x,
-           m->at_y, mean_of(m->sum_x, m), mean_of(m->sum_y, m));
+  json_put(json, "max %g, max_x %g, max_y %g, shift_x %g, shift_y %g", m->max, m->at_x, m->at_y,
+           mean_of(m->sum_x, m), mean_of(m->sum_y, m));
 }
 
 static void print_json(const Verification *v, const char *path, const char *against,

@@ -85,7 +85,7 @@ typedef struct Measure {
       found;       /* corners that should be visible, and those of them that were found */
   uint32_t unseen; /* found corners that the independent projection cannot project */
   uint32_t markers, misread;
-  double sum, sum2, sum_x, sum_y, most;
+  double sum, sum2, sum_x, sum_y, max;
   double at_x, at_y; /* where the largest difference was */
   uint32_t pose;     /* pose of the largest difference */
 } Measure;

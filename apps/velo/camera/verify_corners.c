@@ -51,9 +51,9 @@ static void saddles(const Image *p, float *to) {
     }
 }
 
-static bool is_peak(const Image *p, int x, int y, double least) {
+static bool is_peak(const Image *p, int x, int y, double min) {
   double here = at(p, x, y);
-  if (here < least)
+  if (here < min)
     return false;
   for (int j = -2; j <= 2; j++)
     for (int i = -2; i <= 2; i++)
@@ -78,10 +78,10 @@ int corners_find(const Image *image, Corner *corners, int room) {
     smooth(&half, true, b);
     saddles(&whole, a);
     /* two orthogonal edges give about 0.03 contrast^2, edges at 20 degrees a tenth of that */
-    double least = 0.002 * contrast * contrast;
+    double min = 0.002 * contrast * contrast;
     for (int y = 3; y < image->height - 3 && contrast > 0.0; y++)
       for (int x = 3; x < image->width - 3 && count < room; x++)
-        if (is_peak(&half, x, y, least))
+        if (is_peak(&half, x, y, min))
           corners[count++] = (Corner){x + 0.5, y + 0.5, at(&half, x, y)};
   }
   free(a);

@@ -56,14 +56,14 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
                                      {1, 0, 0},  {1, 0, 0}, {-1, 0, 0}};
   static const double down[6][3] = {{0, 1, 0},  {0, 1, 0}, {0, 0, 1},
                                     {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
-  double most = -1.0;
+  double max = -1.0;
   for (int face = 0; face < 6; face++) {
     double z = vector_dot(ahead[face], p);
     double x = vector_dot(right[face], p);
     double y = vector_dot(down[face], p);
-    if (z <= most)
+    if (z <= max)
       continue;
-    most = z;
+    max = z;
     plane[0] = (as_cross ? at[face][0] : face) + 0.5 * (x / z + 1.0);
     plane[1] = (as_cross ? at[face][1] : 0.0) + 0.5 * (y / z + 1.0);
   }

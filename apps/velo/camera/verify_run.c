@@ -22,10 +22,10 @@ enum {
 };
 /* Windows for the refinement of a corner, pixels: at most so wide, and as much of the distance
  * to the next lines as has no other edge (of a charuco board the markers are nearer). */
-static const double most_reach = 8.0, least_reach = 4.5, blurred = 1.5;
+static const double max_reach = 8.0, min_reach = 4.5, blurred = 1.5;
 static const double free_share = 0.8, free_share_of_charuco = 0.27;
 /* How far a straight line through the window may bend, as a share of its radius. */
-static const double most_bend = 0.04;
+static const double max_bend = 0.04;
 
 typedef struct Expected {
   int i, j;
@@ -62,7 +62,7 @@ static bool in_one_piece(const vlCamera *c, double x, double y, double radius) {
     if (!vl_camera_project(c, middle, pixel, &z))
       return false;
     double off = (pixel[1] - y) * cos(M_PI * k / 8.0) - (pixel[0] - x) * sin(M_PI * k / 8.0);
-    if (!(fabs(off) < most_bend * radius))
+    if (!(fabs(off) < max_bend * radius))
       return false;
   }
   return true;
@@ -123,8 +123,8 @@ static void expect_corners(Pose *pose) {
       e.y = at[1];
       e.apart = apart;
       double share = v->target.charuco ? free_share_of_charuco : free_share;
-      e.reach = fmin(most_reach, share * apart - blurred);
-      if (e.reach < least_reach || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN))
+      e.reach = fmin(max_reach, share * apart - blurred);
+      if (e.reach < min_reach || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN))
         continue;
       pose->expected[pose->count++] = e;
     }
@@ -238,8 +238,8 @@ static void compare(const Pose *pose, uint32_t index, Verification *v, FILE *csv
     m->sum2 += d * d;
     m->sum_x += dx;
     m->sum_y += dy;
-    if (d >= m->most) {
-      m->most = d;
+    if (d >= m->max) {
+      m->max = d;
       m->at_x = x;
       m->at_y = y;
     }
@@ -256,8 +256,8 @@ static void add_up(Measure *all, const Measure *m) {
   all->sum2 += m->sum2;
   all->sum_x += m->sum_x;
   all->sum_y += m->sum_y;
-  if (m->found && m->most >= all->most) {
-    all->most = m->most;
+  if (m->found && m->max >= all->max) {
+    all->max = m->max;
     all->at_x = m->at_x;
     all->at_y = m->at_y;
     all->pose = m->pose;

@@ -131,8 +131,8 @@ int target_read_marker(const Target *target, int i, int j, const Image *image, d
 double target_choose(Target *target, const vlCamera *camera) {
   double side = sqrt((double)camera->width * camera->height) / (target->charuco ? 16.0 : 20.0);
   side = fmin(fmax(side, target->charuco ? 28.0 : 16.0), target->charuco ? 72.0 : 48.0);
-  double most = 0.7 * fmin(camera->width, camera->height) / side - 1.0;
-  target->corners = most > 7.0 ? (target->charuco ? 5 : 7) : most > 5.0 ? 5 : 3;
+  double max = 0.7 * fmin(camera->width, camera->height) / side - 1.0;
+  target->corners = max > 7.0 ? (target->charuco ? 5 : 7) : max > 5.0 ? 5 : 3;
   return side;
 }
 

@@ -12,14 +12,14 @@ static bool interrupted(UNUSED void *user) {
 }
 
 int context_open(const vlContextDef *def, vlContext **context) {
-  const uint32_t most = MAX_PER_PROCESSOR * vl_default_context_def().threads;
+  const uint32_t max = MAX_PER_PROCESSOR * vl_default_context_def().threads;
   vlContextDef ours = *def;
   ours.keep_inputs = true;
   ours.interrupted = interrupted;
-  if (ours.threads > most) {
-    ours.threads = most;
+  if (ours.threads > max) {
+    ours.threads = max;
     report_note("--threads %u: %u are used, %d for each processor (the image is the same)",
-                def->threads, most, MAX_PER_PROCESSOR);
+                def->threads, max, MAX_PER_PROCESSOR);
   }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:

@@ -120,8 +120,8 @@ static void check_material_of(Check *c) {
   check_that(c, RULE_IDS, (double)*known == (double)material);
 }
 
-static void check_id(Check *c, float id, float least) {
-  check_that(c, RULE_IDS, id >= least && floorf(id) == id);
+static void check_id(Check *c, float id, float min) {
+  check_that(c, RULE_IDS, id >= min && floorf(id) == id);
 }
 
 void check_pixel(Check *c) {

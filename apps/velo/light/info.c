@@ -21,10 +21,10 @@ static double polar_intensity(const vlLamp *lamp, double c, double angle) {
  */
 static double ring_step(double greatest) {
   static const double steps[] = {1, 2, 2.5, 5, 10};
-  double least = greatest / RINGS;
-  double power = pow(10, floor(log10(least)));
+  double min = greatest / RINGS;
+  double power = pow(10, floor(log10(min)));
   for (int i = 0; i < 4; i++)
-    if (steps[i] * power >= least)
+    if (steps[i] * power >= min)
       return steps[i] * power;
   return 10 * power;
 }
@@ -45,12 +45,12 @@ static void write_rings(FILE *out, double step) {
   fprintf(out, "</g>\n");
 }
 
-static void write_curve(FILE *out, const vlLamp *lamp, double c, double most,
+static void write_curve(FILE *out, const vlLamp *lamp, double c, double max,
                         const char *style) {
   fprintf(out, "<path fill=\"none\" stroke-width=\"2\" %s d=\"", style);
   for (int k = -360; k <= 360; k++) {
     double angle = k * M_PI / 360;
-    double r = RADIUS * polar_intensity(lamp, c, angle) / most;
+    double r = RADIUS * polar_intensity(lamp, c, angle) / max;
     fprintf(out, "%s%.2f %.2f", k == -360 ? "M" : "L", r * sin(angle), r * cos(angle));
   }
   fprintf(out, "Z\"/>\n");
@@ -125,13 +125,13 @@ static bool is_given(double number) {
 
 /* Intensities at every tenth degree, in the half planes C 0, 90, 180 and 270. Numbers that only
  * rounding makes at the edge of a table are 0. */
-static void print_table(const vlLamp *lamp, double least) {
+static void print_table(const vlLamp *lamp, double min) {
   printf("  intensity, cd\n  %9s %9s %9s %9s %9s\n", "gamma", "C 0", "C 90", "C 180", "C 270");
   for (int gamma = 0; gamma <= 180; gamma += TABLE_STEP) {
     printf("  %9d", gamma);
     for (int k = 0; k < TABLE_PLANES; k++) {
       double intensity = polar_intensity(lamp, k * M_PI / 2, gamma * M_PI / 180);
-      printf(" %9.4g", intensity < least ? 0 : intensity);
+      printf(" %9.4g", intensity < min ? 0 : intensity);
     }
     putchar('\n');
   }

@@ -16,16 +16,16 @@ enum { INFO_JSON };
 
 /* The least and greatest of the numbers, and how many reach the white level. */
 typedef struct Range {
-  uint32_t least, greatest;
+  uint32_t min, greatest;
   uint64_t saturated;
 } Range;
 
 static Range range_of(const vlRaw *raw) {
   const vlRawDef *def = vl_raw_def(raw);
   const uint16_t *numbers = vl_raw_const_numbers(raw);
-  Range range = {.least = UINT16_MAX};
+  Range range = {.min = UINT16_MAX};
   for (size_t i = 0; i < (size_t)def->width * def->height; i++) {
-    range.least = numbers[i] < range.least ? numbers[i] : range.least;
+    range.min = numbers[i] < range.min ? numbers[i] : range.min;
     range.greatest = numbers[i] > range.greatest ? numbers[i] : range.greatest;
     range.saturated += numbers[i] >= def->white;
   }
@@ -87,7 +87,7 @@ static void print_text(const char *path, const vlRaw *raw) {
   printf("%-18s %s\n%-18s %u x %u\n%-18s %u\n%-18s %s\n", "file", path, "size", def->width,
          def->height, "bits", def->bits, "pattern", pattern);
   print_levels(def);
-  printf("%-18s %u to %u, %llu at the white level\n", "numbers", range.least, range.greatest,
+  printf("%-18s %u to %u, %llu at the white level\n", "numbers", range.min, range.greatest,
          (unsigned long long)range.saturated);
   if (def->camera[0])
     printf("%-18s %s\n", "camera", def->camera);
@@ -117,7 +117,7 @@ static void print_json(const char *path, const vlRaw *raw) {
     json_integer(json, NULL, def->black[i]);
   json_end(json, ']');
   json_put(json, "white %u, least %u, greatest %u, saturated %lld, camera %s", def->white,
-           range.least, range.greatest, (long long)range.saturated, def->camera);
+           range.min, range.greatest, (long long)range.saturated, def->camera);
   list_facts(def, &iso, facts);
   for (const Fact *f = facts; f < facts + FACTS; f++) {
     double values[3 * VL_RAW_MAX_COLORS];

@@ -186,8 +186,8 @@ static int render_kept(void *user, uint32_t k) {
 static int render_before(Animator *x, uint32_t frame) {
   Steady *s = &x->shared.steady;
   const Animation *a = &x->animation;
-  const uint32_t most = a->turns ? a->count - 1 : frame;
-  s->count = most < STEADY_BEFORE ? most : STEADY_BEFORE;
+  const uint32_t max = a->turns ? a->count - 1 : frame;
+  s->count = max < STEADY_BEFORE ? max : STEADY_BEFORE;
   for (uint32_t k = 0; k < s->count; k++)
     s->before[k] = (frame + a->count - 1 - k) % a->count;
   const int status = steady_prepare(s, frame, render_kept, x);

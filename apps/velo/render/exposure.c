@@ -49,12 +49,12 @@ float exposure_meter(const vlImage *image) {
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++)
       total += luminance(image, rgb, x, y);
-  double least = 1e-3 * total / ((double)width * height);
+  double min = 1e-3 * total / ((double)width * height);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++) {
       double v = luminance(image, rgb, x, y);
       double w = alpha < 0 ? 1 : (double)vl_image_get(image, x, y, (uint32_t)alpha);
-      if (v > 0 && v >= least && w > 0) {
+      if (v > 0 && v >= min && w > 0) {
         logs += w * log2(v);
         weights += w;
       }
@@ -74,7 +74,7 @@ float exposure_meter(const vlImage *image) {
 enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
 typedef struct SmallDef {
   const char *what; /* it is for */
-  int share, least, most;
+  int share, min, max;
 } SmallDef;
 static const SmallDef meter_small = {"exposure", 6, 48, METER_SIDE},
                       unlit_small = {"light", 3, 24, 48};
@@ -101,9 +101,9 @@ static double mean_light(ModelLight *light) {
     light->ratio[i] = light->radiance[i] / light->albedo[i];
   }
   qsort(light->ratio, n, sizeof *light->ratio, by_value);
-  double most = 4 * light->ratio[n / 2];
+  double max = 4 * light->ratio[n / 2];
   for (size_t i = 0; i < n; i++) {
-    double limit = most > 0 ? most * light->albedo[i] : INFINITY;
+    double limit = max > 0 ? max * light->albedo[i] : INFINITY;
     radiance += light->radiance[i] < limit ? light->radiance[i] : limit;
     albedo += light->albedo[i];
   }
@@ -119,14 +119,14 @@ static double bright(double *pixels, size_t count) {
 /* The most stops by which the image may be made brighter: a tenth of the model's pixels may
  * become white (mirrors and glass show little of a lamp's light), and a tenth of all pixels
  * brighter than a white model. Call after mean_light. */
-static double most_stops(ModelLight *light, double white) {
+static double max_stops(ModelLight *light, double white) {
   double model = -log2(bright(light->radiance, light->count)),
          all = log2(white) - log2(bright(light->all, light->all_count));
-  double most = model < all ? model : all;
-  return most > 0 ? most : 0;
+  double max = model < all ? model : all;
+  return max > 0 ? max : 0;
 }
 
-/* The luminance that half of the pixels exceed. Call after most_stops. */
+/* The luminance that half of the pixels exceed. Call after max_stops. */
 static double median_of(const ModelLight *light) {
   return light->all[light->all_count / 2];
 }
@@ -222,7 +222,7 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
 /* The light on the model: the radiance of a white surface (0: no pixel shows the model) and the
  * share of the model's pixels that get less than a quarter of it. */
 typedef struct Metered {
-  double white, unlit, most_stops;
+  double white, unlit, max_stops;
   double median; /* of the luminance of all pixels; 0 of surfaces that only emit */
   size_t pixels, all;
   size_t seen; /* pixels that show any of the model */
@@ -231,7 +231,7 @@ typedef struct Metered {
 /* The longer side of a small render of an image. */
 static uint32_t small_side(const SmallDef *def, uint32_t width, uint32_t height) {
   const double side = def->share / 16.0 * (width > height ? width : height);
-  return (uint32_t)(side < def->least ? def->least : side > def->most ? def->most : side);
+  return (uint32_t)(side < def->min ? def->min : side > def->max ? def->max : side);
 }
 
 /* def: of the small render of an image of this size. lamps: the light is not that of the studio
@@ -266,7 +266,7 @@ static vlResult measure(vlContext *context, const vlScene *scene, const vlWorld 
       unlit += light->ratio[i] <= 0.25 * metered->white;
     metered->unlit = light->count ? (double)unlit / (double)light->count : 0;
     const bool reflects = light->count && !emits;
-    metered->most_stops = reflects ? most_stops(light, WHITE) : 0;
+    metered->max_stops = reflects ? max_stops(light, WHITE) : 0;
     metered->median = reflects ? median_of(light) : 0;
   }
   free(light);
@@ -296,7 +296,7 @@ int exposure_meter_model(vlContext *context, const vlScene *scene, const vlWorld
       measure(context, scene, world, camera, defs, &meter_small, size, leave <= 0, &m, &error),
       "metering"));
   double stops = m.white > 0 ? log2(WHITE / m.white) : 0;
-  stops = stops > 0 && stops > m.most_stops ? m.most_stops : stops;
+  stops = stops > 0 && stops > m.max_stops ? m.max_stops : stops;
   stops = without_glare(fabs(stops) <= leave ? 0 : stops, m.median);
   stops = round(10 * stops) / 10;
   *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);

@@ -92,10 +92,10 @@ static void report_checkpoint(FilmKeeper *k, vlResult result) {
 }
 
 void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
-  double now = monotonic_seconds(), least = k->share > 0 ? k->cost / k->share : 0;
+  double now = monotonic_seconds(), min = k->share > 0 ? k->cost / k->share : 0;
   if (!k->path[0] || k->stream || vl_film_spp(film) == k->written)
     return;
-  if (now - k->last < (least > k->every ? least : k->every))
+  if (now - k->last < (min > k->every ? min : k->every))
     return;
   bool waited = k->running;
   vlResult result = join(k);

@@ -39,16 +39,16 @@ void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes) {
  * each. */
 static uint64_t writing(vlContext *context, const Outputs *outputs, uint64_t width,
                         uint64_t height, uint64_t values) {
-  uint64_t most = 0, rows = 32 * (uint64_t)vl_context_threads(context);
+  uint64_t max = 0, rows = 32 * (uint64_t)vl_context_threads(context);
   if (rows > height)
     rows = height;
   for (int i = 0; i < outputs->count; i++) {
     uint64_t bytes =
         12 * width * (output_holds_layers(outputs->paths[i]) ? rows * (4 + values) : 16);
-    if (bytes > most)
-      most = bytes;
+    if (bytes > max)
+      max = bytes;
   }
-  return most;
+  return max;
 }
 
 static uint64_t film_bytes(const Job *job, const Frames *frames) {
@@ -131,8 +131,8 @@ int memory_check(const MemoryPlan *plan, uint64_t limit) {
   if (limit && plan->total > limit)
     return too_much(plan, limit, "--max-memory allows");
   const char *who;
-  uint64_t most = vl_memory_limit(&who);
-  return plan->total > most ? too_much(plan, most, who) : -1;
+  uint64_t max = vl_memory_limit(&who);
+  return plan->total > max ? too_much(plan, max, who) : -1;
 }
 
 void memory_report_json(const MemoryPlan *plan, uint64_t limit) {

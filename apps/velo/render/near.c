@@ -27,13 +27,13 @@ bool near_is_allowed(const Arguments *arguments) {
 /* The middle of the box in whole numbers. Returns its distance from the origin, divided by the
  * box's size. */
 static double find_middle(const double low[3], const double high[3], double middle[3]) {
-  double size = 0, most = 0;
+  double size = 0, max = 0;
   for (int i = 0; i < 3; i++) {
     middle[i] = floor(0.5 * (low[i] + high[i]) + 0.5);
     size = fmax(size, high[i] - low[i]);
-    most = fmax(most, fabs(middle[i]));
+    max = fmax(max, fabs(middle[i]));
   }
-  return size > 0 && isfinite(most) ? most / size : 0;
+  return size > 0 && isfinite(max) ? max / size : 0;
 }
 
 static void move_camera(vlCameraDef *camera, const double middle[3]) {
@@ -49,11 +49,11 @@ int near_move(vlScene *scene, const char *path, SceneOpening *opening) {
   if (!(away > far))
     return -1;
   if (!opening->images_only) {
-    const double most = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
+    const double max = fmax(fabs(middle[0]), fmax(fabs(middle[1]), fabs(middle[2])));
     report_note(
         "the model lies %.3g times its size from the origin: its positions are rounded to "
         "about %.2g; .png, .jpg and .tga alone are rendered about its middle, without this",
-        away, most * float_error);
+        away, max * float_error);
     return -1;
   }
   const double world_from_scene[16] = {1, 0, 0, -middle[0], 0, 1, 0, -middle[1],

@@ -30,10 +30,10 @@ int race_check_options(const Arguments *arguments) {
 uint32_t race_samples(const vlSceneDefs *defs) {
   const vlRenderDef *render = &defs->render;
   double pixels = (double)defs->film.width * defs->film.height;
-  double most = fmin(render->spp, MAX_SAMPLES);
+  double max = fmin(render->spp, MAX_SAMPLES);
   if (render->time_limit > 0)
-    most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
-  return (uint32_t)most;
+    max = fmin(max, render->time_limit * PATHS_PER_SECOND / pixels);
+  return (uint32_t)max;
 }
 
 /* Whether there is a race that was not asked for: the tracer, or the number of a bidirectional

@@ -19,13 +19,13 @@ static int fail_command(const char *path, const char *why) {
 int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments *arguments) {
   char *words[2 * MAX_OPTIONS + 4];
   const char *word;
-  int count = 0, most = (int)(LENGTH(words));
+  int count = 0, max = (int)(LENGTH(words));
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) {
     if (i < 2 && strcmp(word, i ? "render" : "velo") != 0)
       return fail_command(path, "it is not velo render");
     if (i < 2)
       continue;
-    if (count == most)
+    if (count == max)
       return fail_command(path, "it is too long");
     if (strlen(word) >= RECEIPT_MAX_WORD)
       return fail_command(path, "a word is too long");

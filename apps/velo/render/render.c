@@ -242,11 +242,11 @@ static int check_sizes(const Render *render) {
   const vlFilmDef *film = &render->job.defs->film;
   uint32_t width = crop_width(film->crop), height = crop_height(film->crop);
   for (int i = 0; i < render->outputs.count; i++) {
-    uint32_t most = output_largest_side(render->outputs.paths[i]);
-    if (width > most || height > most)
+    uint32_t max = output_largest_side(render->outputs.paths[i]);
+    if (width > max || height > max)
       return report_usage(
           "output \"%s\": %u x %u pixels, this format holds at most %u each way",
-          render->outputs.paths[i], width, height, most);
+          render->outputs.paths[i], width, height, max);
   }
   vlFilm *film_made = NULL; /* memory is allocated by the first pass */
   const int status = job_make_film(&render->job, &film_made);
@@ -452,7 +452,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
 /* Checked before the render, so that it does not run out of memory after hours. */
 static int reckon_memory(Render *render, const Arguments *arguments) {
   const OptionValue *limit = &arguments->values[RENDER_MAX_MEMORY];
-  uint64_t most = (uint64_t)limit->integer;
+  uint64_t max = (uint64_t)limit->integer;
   memory_plan(&render->memory, &render->job, &render->outputs, &render->channels,
               render->many ? &render->frames : NULL);
   if (render->denoised.outputs.count)
@@ -460,14 +460,14 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
   if (render->denoised.steady && render->denoised.outputs.count)
     memory_add(&render->memory, "frames before", steady_memory(run_pixels(render)));
   if (report_is_json())
-    memory_report_json(&render->memory, most);
+    memory_report_json(&render->memory, max);
   if (arguments->values[RENDER_VERBOSE].given) {
     char list[400];
     memory_list(&render->memory, list, sizeof list);
     report_note("memory: %sB are needed: %s", format_count((double)render->memory.total).text,
                 list);
   }
-  return memory_check(&render->memory, most);
+  return memory_check(&render->memory, max);
 }
 
 /* With --again: whether the image will be the same. */

@@ -120,7 +120,7 @@ uint64_t run_pixels(const Render *render) {
 
 /* Returns the smallest number of samples per pixel that suffices for every output. A denoiser
  * needs more samples, for its standard errors. */
-static uint32_t least_samples(const Render *render) {
+static uint32_t min_samples(const Render *render) {
   return render->denoised.outputs.count ? 2 : 1;
 }
 
@@ -146,7 +146,7 @@ static void limit_time(Render *render) {
   double left =
       render->time_limit - (render->render_start - render->start) - finish_seconds(render);
   render->job.defs->render.time_limit = left > 1e-3 ? left : 1e-3;
-  if (vl_film_spp(render->film) < least_samples(render))
+  if (vl_film_spp(render->film) < min_samples(render))
     render->job.defs->render.time_limit = 0;
 }
 
@@ -288,7 +288,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
 /* The first pass, with --denoise the second one too, is always completed. */
 static void report_late(const Render *render, uint32_t spp) {
   double elapsed = monotonic_seconds() - render->start;
-  if (!(render->time_limit > 0) || spp > render->begun_spp + least_samples(render) ||
+  if (!(render->time_limit > 0) || spp > render->begun_spp + min_samples(render) ||
       elapsed < 1.05 * render->time_limit || signals_pending())
     return;
   report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp,

@@ -225,12 +225,12 @@ static void choose_walls(const OptionValue *walls, vlCompleteDef *complete) {
 }
 
 static int check_completion(const OptionValue *v) {
-  const double most = vl_setting(VL_SETTING_COMPLETE, "elevation")->high;
+  const double max = vl_setting(VL_SETTING_COMPLETE, "elevation")->high;
   if (v[RENDER_NO_GROUND].given &&
       (v[RENDER_GROUND_MIDDLE].given || v[RENDER_GROUND_RADIUS].given))
     return report_usage("--no-ground does not go with --ground-middle and --ground-radius");
   if (v[RENDER_FRAMING].given && v[RENDER_FRAMING].integer == OPTION_LIST_GIVEN &&
-      fabs(v[RENDER_FRAMING].numbers[1]) > most)
+      fabs(v[RENDER_FRAMING].numbers[1]) > max)
     return report_usage("--framing A,E: E must be from -89 to 89 degrees; it is \"%s\"",
                         v[RENDER_FRAMING].text);
   return -1;

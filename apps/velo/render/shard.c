@@ -91,10 +91,10 @@ static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint
   uint32_t blocks[4];
   for (int i = 0; i < 4; i++)
     blocks[i] = (crop[i] + (i < 2 ? 0 : FILM_BLOCK - 1)) / FILM_BLOCK;
-  uint64_t most = crop_pixels(blocks);
-  if (count > most)
+  uint64_t max = crop_pixels(blocks);
+  if (count > max)
     return report_usage("--shard %u/%u: more parts than tiles of %d pixels (%llu)", index + 1,
-                        count, FILM_BLOCK, (unsigned long long)most);
+                        count, FILM_BLOCK, (unsigned long long)max);
   cut(blocks, index, count);
   shard_block_window(blocks, crop, tiles);
   return -1;

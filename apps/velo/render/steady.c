@@ -150,8 +150,8 @@ static float distance_of(const float own[3], const float error[3], const float c
   float sum = 0;
   for (int j = 0; j < 3; j++) {
     /* a pixel at an edge has much noise: it is no reason to take its light */
-    const float noise = error[j] * error[j], most = 4 * noise;
-    const float other = variance[j] < most ? variance[j] : most;
+    const float noise = error[j] * error[j], max = 4 * noise;
+    const float other = variance[j] < max ? variance[j] : max;
     const float scale = noise + other + 1e-6f * own[j] * own[j], d = color[j] - own[j];
     if (d != 0)
       sum += scale > 0 ? d * d / scale : INFINITY;

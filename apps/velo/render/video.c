@@ -89,10 +89,10 @@ static bool is_frames(const char *path) {
 static bool name_frames(Videos *videos, const char *part) {
   const char *path = videos->paths[0];
   const int stem = (int)(output_dot(path) - path);
-  const size_t longest = MAX_NAME - strlen(".part_1000000.part.png");
+  const size_t max_length = MAX_NAME - strlen(".part_1000000.part.png");
   return text_set(videos->frames, "%.*s%s_%%04d.png", stem, path, part) <
              (int)sizeof videos->frames &&
-         (size_t)(path + stem - text_file_name(path)) <= longest;
+         (size_t)(path + stem - text_file_name(path)) <= max_length;
 }
 
 int videos_plan(Videos *videos, const Arguments *arguments, Arguments *frames) {

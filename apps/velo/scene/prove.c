@@ -47,8 +47,8 @@ static vlResult take(vlContext *context, Shot *shot, bool ids, bool alone, vlErr
   if (alone)
     complete.environment = VL_ENVIRONMENT_NONE;
   TRY_RESULT(vl_scene_complete(shot->scene, &complete, error));
-  const double most = fmax(defs->film.width, defs->film.height);
-  const double k = most > SIDE ? SIDE / most : 1;
+  const double max = fmax(defs->film.width, defs->film.height);
+  const double k = max > SIDE ? SIDE / max : 1;
   vlFilmDef film_def = vl_default_film_def((uint32_t)fmax(1, k * defs->film.width + 0.5),
                                            (uint32_t)fmax(1, k * defs->film.height + 0.5));
   vlRenderDef render = defs->render;

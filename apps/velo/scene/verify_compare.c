@@ -6,7 +6,7 @@
 
 /* Differences below this share of a cell's mean do not count: rounding, and the tables from
  * which spectra are read. A cell counts as at least DARK of the image's mean. */
-#define LEAST 1e-3
+#define MIN_SHARE 1e-3
 #define DARK 0.05
 
 /* Whether a run has a part of the lights. */
@@ -50,10 +50,10 @@ VerifyDifference verify_difference(const Verify *v, const VerifyRun *run, int lo
     mean += b[r * stride + value] / VERIFY_REPLICATES;
     whole += b[r * stride + channel] / VERIFY_REPLICATES;
   }
-  const double least = LEAST * fmax(fabs(mean), DARK * fabs(whole));
-  const double least_error = sqrt(variance_per_pixel(v, a, b, channel) /
-                                  ((double)VERIFY_REPLICATES * v->cells[cell].pixels));
-  return verify_compare(a + value, b + value, VERIFY_REPLICATES, stride, least, least_error);
+  const double min = MIN_SHARE * fmax(fabs(mean), DARK * fabs(whole));
+  const double min_error = sqrt(variance_per_pixel(v, a, b, channel) /
+                                ((double)VERIFY_REPLICATES * v->cells[cell].pixels));
+  return verify_compare(a + value, b + value, VERIFY_REPLICATES, stride, min, min_error);
 }
 
 static bool is_compared(const VerifyRun *run) {

@@ -23,7 +23,7 @@ enum { MAX_CHILDREN = 64 };
 /* The time of a ray of the reference renderer, relative to a ray of velo's. */
 #define RAY_COST 4
 /* Seconds of a look after which the reference renderer is stopped. */
-static const double longest[2] = {40, 100};
+static const double max_seconds[2] = {40, 100};
 
 /* ---- finding the program ----------------------------------------------------------------- */
 
@@ -227,11 +227,11 @@ static void remove_files(const Look *l) {
 /* Renders all replicates, as many at once as the context has threads, until `end`. */
 static vlResult render_all(Look *l, double limit) {
   const uint32_t threads = vl_context_threads(l->v->context);
-  const uint32_t most = threads < MAX_CHILDREN ? threads : MAX_CHILDREN;
+  const uint32_t max = threads < MAX_CHILDREN ? threads : MAX_CHILDREN;
   const double end = monotonic_seconds() + limit;
   vlResult result = VL_OK;
   while (result == VL_OK && !l->refused && (l->running || l->next < l->count)) {
-    while (result == VL_OK && l->running < most && l->next < l->count)
+    while (result == VL_OK && l->running < max && l->next < l->count)
       result = start(l);
     if (result == VL_OK)
       result = collect(l);
@@ -261,7 +261,7 @@ static vlResult run_look(Look *l, double limit) {
 vlResult verify_reference_try(Verify *v, VerifyRun *run, vlError *error) {
   Look l = {.v = v, .run = run, .look = VERIFY_TRIAL, .spp = 1, .count = 1, .error = error};
   run->rays = RAY_COST * v->runs[run->against].rays;
-  return run_look(&l, longest[0]);
+  return run_look(&l, max_seconds[0]);
 }
 
 vlResult verify_reference(Verify *v, VerifyRun *run, int look, vlError *error) {
@@ -272,5 +272,5 @@ vlResult verify_reference(Verify *v, VerifyRun *run, int look, vlError *error) {
             .count = VERIFY_REPLICATES,
             .error = error};
   l.rows = run->values[look];
-  return run_look(&l, longest[look]);
+  return run_look(&l, max_seconds[look]);
 }

@@ -27,9 +27,9 @@ static void find_farthest(const Verify *v, const VerifyRun *run, double z[VERIFY
     if (!verify_uses_cell(v, run, cell))
       continue;
     const VerifyDifference d = verify_difference(v, run, 0, value);
-    double *most = &z[verify_family(run, &v->cells[cell])];
-    if (fabs(d.z) > fabs(*most))
-      *most = d.z;
+    double *farthest = &z[verify_family(run, &v->cells[cell])];
+    if (fabs(d.z) > fabs(*farthest))
+      *farthest = d.z;
   }
 }
 
@@ -61,25 +61,25 @@ static void name_cell(const Verify *v, const VerifyRun *run, uint32_t cell, char
 /* Of each family the value that differs most. */
 static void print_marks(const Verify *v, int index) {
   const VerifyRun *run = &v->runs[index];
-  const VerifyMark *most[VERIFY_FAMILIES] = {NULL};
+  const VerifyMark *marks[VERIFY_FAMILIES] = {NULL};
   for (uint32_t k = 0; k < v->mark_count; k++) {
     const VerifyMark *mark = &v->marks[k];
     if (mark->run != index || !mark->differs)
       continue;
     const VerifyMark **slot =
-        &most[verify_family(run, &v->cells[mark->value / VERIFY_CHANNELS])];
+        &marks[verify_family(run, &v->cells[mark->value / VERIFY_CHANNELS])];
     if (!*slot || fabs(mark->second.z) > fabs((*slot)->second.z))
       *slot = mark;
   }
   for (int f = 0; f < VERIFY_FAMILIES; f++) {
     char name[80];
-    if (!most[f])
+    if (!marks[f])
       continue;
-    const VerifyDifference *d = &most[f]->second;
-    name_cell(v, run, most[f]->value / VERIFY_CHANNELS, name, sizeof name);
+    const VerifyDifference *d = &marks[f]->second;
+    name_cell(v, run, marks[f]->value / VERIFY_CHANNELS, name, sizeof name);
     printf("%s, %s, %s: %.5g, %s: %.5g; ratio %.4f, z %.1f and %.1f\n", run->name, name,
-           channels[most[f]->value % VERIFY_CHANNELS], d->a, v->runs[run->against].name, d->b,
-           ratio_of(d), most[f]->first.z, d->z);
+           channels[marks[f]->value % VERIFY_CHANNELS], d->a, v->runs[run->against].name, d->b,
+           ratio_of(d), marks[f]->first.z, d->z);
   }
 }
 

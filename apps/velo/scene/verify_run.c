@@ -14,7 +14,7 @@
 #include "velo/filter_kinds.h"
 #include "velo/tracer.h"
 
-enum { BLOCK = 8, LEAST_PIXELS = 8, MAX_SPP = 4096, LEAST_MET = 100 };
+enum { BLOCK = 8, MIN_PIXELS = 8, MAX_SPP = 4096, MIN_MET = 100 };
 
 /* ---- poses ------------------------------------------------------------------------------- */
 
@@ -156,18 +156,18 @@ static void make_materials(Verify *v, const vlImage *ids, uint32_t *pixels_of,
   for (size_t i = 0; i < pixels; i++)
     pixels_of[id[i * step]]++;
   for (uint32_t k = 0; k < VERIFY_MAX_MATERIALS; k++) {
-    uint32_t most = 0;
+    uint32_t largest = 0;
     for (uint32_t m = 0; m <= materials; m++)
-      if (pixels_of[m] > pixels_of[most])
-        most = m;
-    if (pixels_of[most] < LEAST_PIXELS)
+      if (pixels_of[m] > pixels_of[largest])
+        largest = m;
+    if (pixels_of[largest] < MIN_PIXELS)
       break;
     const uint32_t cell = v->cell_count++;
     v->cells[cell] =
-        (VerifyCell){.family = VERIFY_MATERIAL, .pixels = pixels_of[most], .index = most};
-    pixels_of[most] = 0;
+        (VerifyCell){.family = VERIFY_MATERIAL, .pixels = pixels_of[largest], .index = largest};
+    pixels_of[largest] = 0;
     for (size_t i = 0; i < pixels; i++)
-      if (id[i * step] == most)
+      if (id[i * step] == largest)
         v->material_of[i] = cell;
   }
 }
@@ -404,12 +404,12 @@ static void share_budget(Verify *v) {
       shares += v->runs[i].reference ? VERIFY_REFERENCE_SHARES : 1;
   for (int i = 0; i < v->run_count; i++) {
     VerifyRun *run = &v->runs[i];
-    double most = 1, spp = 1;
+    double max = 1, spp = 1;
     for (int k = 0; k < v->run_count; k++)
       if (v->runs[k].tracer == run->tracer && v->runs[k].reference == run->reference)
-        most = fmax(most, v->runs[k].rays);
+        max = fmax(max, v->runs[k].rays);
     const double own = run->reference ? VERIFY_REFERENCE_SHARES : 1;
-    const double share = own * v->budget / (shares * VERIFY_REPLICATES * most);
+    const double share = own * v->budget / (shares * VERIFY_REPLICATES * max);
     while (2 * spp <= share && spp < MAX_SPP)
       spp *= 2;
     run->spp[0] = (uint32_t)spp;
@@ -424,7 +424,7 @@ static void leave_out_rare(Verify *v) {
     VerifyRun *run = &v->runs[i];
     const double paths = (double)v->width * v->height * run->spp[0] * VERIFY_REPLICATES;
     if (run->left_out || run->tracer != VL_TRACER_LIGHT_PATH || !v->far_light ||
-        paths * v->meets >= LEAST_MET)
+        paths * v->meets >= MIN_MET)
       continue;
     run->left_out = true;
     verify_note(

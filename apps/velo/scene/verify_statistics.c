@@ -85,12 +85,12 @@ double verify_variance(const double *a, const double *b, uint32_t replicates, si
 }
 
 VerifyDifference verify_compare(const double *a, const double *b, uint32_t replicates,
-                                size_t stride, double least, double least_error) {
+                                size_t stride, double min, double min_error) {
   VerifyDifference result = {.a = mean_of(a, replicates, stride),
                              .b = mean_of(b, replicates, stride)};
   const double own = sqrt(verify_variance(a, b, replicates, stride) / replicates);
-  const double beyond = fabs(result.a - result.b) - least;
-  result.error = fmax(own, least_error);
+  const double beyond = fabs(result.a - result.b) - min;
+  result.error = fmax(own, min_error);
   result.p = beyond > 0 ? verify_student_p(beyond / result.error, replicates - 1) : 1;
   result.z = copysign(verify_normal_z(result.p), result.a - result.b);
   return result;

@@ -43,13 +43,13 @@ double verify_normal_z(double p);
 /* The variance of a - b between replicates, unbiased: replicate r of both has the same seed,
  * and its value is a[r * stride]. replicates >= 2. */
 double verify_variance(const double *a, const double *b, uint32_t replicates, size_t stride);
-/* Compares the means of a and b, as above. least: the smallest difference that counts: p is
+/* Compares the means of a and b, as above. min: the smallest difference that counts: p is
  * that of the part above it. least_error: the standard error is at least this. A cell in which
  * a tracer has not met its rare bright paths seems to have little noise, so that its mean seems
  * to be too dark beyond chance; the noise of all cells together says how large the error of
  * such a cell is. replicates >= 3. */
 VerifyDifference verify_compare(const double *a, const double *b, uint32_t replicates,
-                                size_t stride, double least, double least_error);
+                                size_t stride, double min, double min_error);
 
 /* The p below which a value is significant in the first look. of_family: number of values of
  * its family in all comparisons; families: number of families that have any. */

@@ -12,9 +12,9 @@
 #include "velo/tracer.h"
 #include "view/engine_sensor.h"
 
-/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before
+/* The coarsest image has 1/MAX_SCALE of the width and height. Pixels of the first image: before
  * speed is known; as many as it should have (160 x 90); fewer would hardly be quicker. */
-enum { COARSEST = 32, FIRST_PIXELS = 8192, GOOD_PIXELS = 14400, FEWEST_PIXELS = 2048 };
+enum { MAX_SCALE = 32, FIRST_PIXELS = 8192, GOOD_PIXELS = 14400, MIN_PIXELS = 2048 };
 /* Of the first image after a change: others can follow it 25 times a second. */
 static const double first_seconds = 0.03;
 /* Of one with GOOD_PIXELS where they take longer. */
@@ -35,13 +35,13 @@ double engine_pixels(const Engine *e) {
  * known. */
 static uint32_t first_scale(const Engine *e, double pixel_seconds) {
   double pixels = engine_pixels(e),
-         most = pixel_seconds > 0 ? first_seconds / pixel_seconds : FIRST_PIXELS;
-  double good = fmin(COARSEST, fmax(1, floor(sqrt(pixels / GOOD_PIXELS))));
+         max = pixel_seconds > 0 ? first_seconds / pixel_seconds : FIRST_PIXELS;
+  double good = fmin(MAX_SCALE, fmax(1, floor(sqrt(pixels / GOOD_PIXELS))));
   if (pixel_seconds > 0 && pixels / (good * good) * pixel_seconds <= longest_first)
-    most = fmax(most, pixels / (good * good));
-  most = fmax(most, FEWEST_PIXELS);
+    max = fmax(max, pixels / (good * good));
+  max = fmax(max, MIN_PIXELS);
   uint32_t scale = 1;
-  while (scale < COARSEST && pixels > most * scale * scale)
+  while (scale < MAX_SCALE && pixels > max * scale * scale)
     scale++;
   return scale;
 }

@@ -16,7 +16,7 @@
 
 /* Processor time for the preview: this share of the program's, which may run ahead by so many
  * seconds per thread. In the first 30 s of an image these are at most 19 %. */
-static const double most_share = 0.15, ahead_seconds = 7.5;
+static const double max_share = 0.15, ahead_seconds = 7.5;
 static const double usual_pixel_seconds = 3e-6; /* before it is measured */
 /* Rows above the new ones that are denoised with them: as many as windows reach. */
 enum { OVERLAP = 9, REACH = 2, CHANNELS = 13 };
@@ -48,7 +48,7 @@ bool engine_can_denoise(const Engine *e, double pixels) {
   double cost = pixels * (p->pixel_seconds > 0 ? p->pixel_seconds : usual_pixel_seconds),
          used = engine_program_seconds() - p->before,
          ahead = ahead_seconds * vl_context_threads(e->def.context);
-  return is_wanted(e) && p->seconds + cost <= most_share * (used + cost + ahead);
+  return is_wanted(e) && p->seconds + cost <= max_share * (used + cost + ahead);
 }
 
 bool engine_denoise_due(const Engine *e, uint32_t spp) {

@@ -31,11 +31,11 @@ void engine_add_trace(Engine *e, const ViewMessage *m) {
 }
 
 static void post_paths(Engine *e, const ViewMessage *m, const TracedPaths *traced) {
-  uint32_t most = m->show ? m->show : DEFAULT_SHOWN, count = traced->paths->count;
+  uint32_t max = m->show ? m->show : DEFAULT_SHOWN, count = traced->paths->count;
   const PathsReport report = {.file = e->def.path,
                               .world = e->model.world,
                               .traced = traced,
-                              .shown = count < most ? count : most};
+                              .shown = count < max ? count : max};
   Json *json = engine_reply_begin(m, "paths");
   if (!json)
     return;

@@ -57,8 +57,8 @@ static RaceKind plan(const Engine *e, uint32_t spp, vlSceneDefs *defs) {
 
 bool engine_race_due(const Engine *e, uint32_t spp) {
   vlSceneDefs defs;
-  uint32_t least = spp < RACE_LEAST_SAMPLES ? spp : RACE_LEAST_SAMPLES;
-  if (e->race.planned_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least)
+  uint32_t min = spp < RACE_LEAST_SAMPLES ? spp : RACE_LEAST_SAMPLES;
+  if (e->race.planned_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < min)
     return false;
   return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->race.planned_for;
 }

@@ -18,7 +18,7 @@
 #include "view/view.h"
 
 static const double pass_seconds = 0.2; /* of a pass at the beginning; */
-static const double longest_pass = 1.0; /* later ones are longer */
+static const double max_pass = 1.0;     /* later ones are longer */
 static const double step_seconds = 0.1; /* of a pass where nothing can interrupt it */
 /* of the time, for frames, when the image is nearly done */
 static const double publish_share = 0.03;
@@ -110,14 +110,13 @@ static void begin_film(Engine *e) {
   engine_unlock(e);
 }
 
-/* The number of samples of the next pass of a film that shall have `most`. */
-static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most) {
+/* The number of samples of the next pass of a film that shall have `max`. */
+static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t max) {
   double pixels = engine_pixels(e),
-         seconds = e->def.stepwise
-                       ? step_seconds
-                       : fmin(longest_pass, pass_seconds + 0.25 * e->samples.seconds),
+         seconds = e->def.stepwise ? step_seconds
+                                   : fmin(max_pass, pass_seconds + 0.25 * e->samples.seconds),
          n = seconds / (e->samples.pixel_seconds * pixels + 1e-9);
-  uint32_t done = vl_film_spp(film), left = most - done;
+  uint32_t done = vl_film_spp(film), left = max - done;
   n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
   if (done == 0)
     n = 1;

@@ -150,7 +150,7 @@ static void describe_difference(Verification *v) {
   const uint32_t width = vl_image_width(shown), height = vl_image_height(shown);
   vlImage *made = NULL;
   uint64_t count = 0;
-  double most = 0;
+  double max = 0;
   if (vl_image_read(v->engine->def.context, v->made[1], &made, NULL) != VL_OK ||
       vl_image_width(made) != width || vl_image_height(made) != height) {
     fail(v, "the command's image has another size", NULL);
@@ -166,12 +166,12 @@ static void describe_difference(Verification *v) {
                          (double)vl_image_get(
                              made, x, y, (uint32_t)vl_image_find_channel(made, names[c]))));
       count += d > 0;
-      most = fmax(most, d);
+      max = fmax(max, d);
     }
   vl_image_destroy(made);
   if (count)
     text_set(v->message, "%llu of %llu pixels differ, by up to %.3g", (unsigned long long)count,
-             (unsigned long long)width * height, most);
+             (unsigned long long)width * height, max);
   else
     fail(v, "the pixels are the same, the headers differ", NULL);
 }

@@ -18,7 +18,7 @@
  * moved one. */
 enum { MAX_PIXELS = 320000, CLEAN_SPP = 16, GRAINY_SPP = 4 };
 /* Of the pixels, so many must be covered by points: else the cameras see different things. */
-static const double least_cover = 0.6;
+static const double min_cover = 0.6;
 
 void engine_warp_forget(Engine *e) {
   vl_image_destroy(e->warp.image);
@@ -213,7 +213,7 @@ bool engine_warp_publish(Engine *e) {
   Cover cover = {.from = calloc(pixels, sizeof *cover.from),
                  .depth = calloc(pixels, sizeof *cover.depth)};
   bool done = cover.from && cover.depth && find_cover(e, &to, &cover) &&
-              (double)cover.count >= least_cover * (double)pixels &&
+              (double)cover.count >= min_cover * (double)pixels &&
               image_make(e->def.context, to.width, to.height, 4, NULL, &image) == VL_OK;
   if (done) {
     engine_fill_rows(e, image, w->scale, 0);

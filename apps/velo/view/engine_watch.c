@@ -161,11 +161,11 @@ void *engine_watch(void *user) {
   while (!ends(e)) {
     engine_lock(e);
     const bool due = e->time.due;
-    const double longest = e->model.seconds > 0 ? 0.01 : 0.1;
+    const double max_wait = e->model.seconds > 0 ? 0.01 : 0.1;
     engine_unlock(e);
     if (due)
       good = load_again(e, watch, true);
-    else if (watch_wait(watch, longest, !good) && !ends(e))
+    else if (watch_wait(watch, max_wait, !good) && !ends(e))
       good = load_again(e, watch, false);
   }
   watch_destroy(watch);

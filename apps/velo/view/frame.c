@@ -169,9 +169,9 @@ static uint32_t changed_tiles(const ViewFrame *now, const ViewFrame *before,
 
 uint8_t *frame_message(const ViewFrame *now, const ViewFrame *before, size_t before_room,
                        size_t *size) {
-  size_t most = (size_t)((now->columns + FRAME_TILE - 1) / FRAME_TILE) *
-                ((now->rows + FRAME_TILE - 1) / FRAME_TILE);
-  uint32_t(*tiles)[4] = malloc(most * sizeof *tiles);
+  size_t max = (size_t)((now->columns + FRAME_TILE - 1) / FRAME_TILE) *
+               ((now->rows + FRAME_TILE - 1) / FRAME_TILE);
+  uint32_t(*tiles)[4] = malloc(max * sizeof *tiles);
   if (!tiles)
     return NULL;
   uint32_t count = changed_tiles(now, before, tiles);

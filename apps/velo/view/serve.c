@@ -10,7 +10,7 @@
 #include "view/state.h"
 
 /* Frames take at most this share of the time, and come at most so often (seconds). */
-static const double most_share = 0.03, least_pause = 0.2;
+static const double max_share = 0.03, min_pause = 0.2;
 
 struct Serve {
   const Job *job;
@@ -86,7 +86,7 @@ static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
 }
 
 void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
-  double start = monotonic_seconds(), pause = fmax(least_pause, s->cost / most_share);
+  double start = monotonic_seconds(), pause = fmax(min_pause, s->cost / max_share);
   if (!s->clients ||
       (!s->fresh && start - s->shown < pause && progress->spp_done < progress->spp_total))
     return;

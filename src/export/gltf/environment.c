@@ -320,8 +320,8 @@ static json_int_t put_face(vlExport *x, const Level *level, uint32_t face, doubl
   uint16_t *to = vl_image_pixels(image);
   for (size_t i = 0; i < count; i++) {
     const float *from = level->texels + 3 * (face * count + i);
-    double most = fmax(from[0], fmax(from[1], from[2])) / intensity,
-           d = most > 1 ? fmax(1, floor(255 / most)) : 255;
+    double max = fmax(from[0], fmax(from[1], from[2])) / intensity,
+           d = max > 1 ? fmax(1, floor(255 / max)) : 255;
     for (int c = 0; c < 3; c++) {
       double v = fmin(1, (double)from[c] / intensity * d / 255);
       to[4 * i + (size_t)c] = (uint16_t)(vl_linear_to_srgb(v) * 65535 + 0.5);
@@ -343,13 +343,13 @@ static json_int_t put_face(vlExport *x, const Level *level, uint32_t face, doubl
 static bool put_cube(const Cube *cube, json_t *scene) {
   vlExport *x = cube->x;
   const Level *finest = &cube->plain[0];
-  double most = 0;
+  double max = 0;
   for (size_t i = 0; i < 18 * (size_t)finest->side * finest->side; i++)
-    most = fmax(most, (double)finest->texels[i]);
-  if (!(most > 0))
+    max = fmax(max, (double)finest->texels[i]);
+  if (!(max > 0))
     return true;
   /* the range of D is 1 to 255; an intensity takes what is beyond */
-  const double intensity = most > 255 ? most / 255 : most < 1 ? most : 1;
+  const double intensity = max > 255 ? max / 255 : max < 1 ? max : 1;
   json_t *levels = json_array();
   for (uint32_t k = 0; k < cube->levels; k++) {
     json_t *faces = json_array();

@@ -209,14 +209,14 @@ static void put_volume(vlExport *x, json_t *material, vlMediumId inside) {
   vl_export_rgb(x, &input, sigma);
   for (int i = 0; i < 3; i++)
     sigma[i] *= m->scale;
-  const float most = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
-  if (!(most > 0))
+  const float max = fmaxf(sigma[0], fmaxf(sigma[1], sigma[2]));
+  if (!(max > 0))
     return;
   json_t *color = json_array();
   for (int i = 0; i < 3; i++)
-    json_array_append_new(color, json_real(vl_precise_exp(-(double)sigma[i] / (double)most)));
+    json_array_append_new(color, json_real(vl_precise_exp(-(double)sigma[i] / (double)max)));
   json_object_set_new(volume, "attenuationColor", color);
-  set_number(volume, "attenuationDistance", 1.0 / (double)most);
+  set_number(volume, "attenuationDistance", 1.0 / (double)max);
 }
 
 /* ---- principled -------------------------------------------------------------------------- */
@@ -261,12 +261,12 @@ static void put_film(vlExport *x, json_t *material, const vlPrincipledDef *p) {
     set_number(e, "iridescenceIor", p->iridescence_ior);
     const vlTextureDef *t = vl_export_texture(x, p->iridescence_thickness.texture);
     json_t *info = reads_channel(t, 1) ? vl_gltf_texture_info(x, t, true) : NULL;
-    double most = info ? (double)t->bias + factor_of(t, 1)
-                       : (double)vl_export_number(x, &p->iridescence_thickness);
+    double max = info ? (double)t->bias + factor_of(t, 1)
+                      : (double)vl_export_number(x, &p->iridescence_thickness);
     if (p->iridescence_thickness.texture.index && !info)
       vl_export_lose(x, "textured iridescence thickness: a number stands in");
-    set_number(e, "iridescenceThicknessMinimum", info ? (double)t->bias : fmin(100, most));
-    set_number(e, "iridescenceThicknessMaximum", most);
+    set_number(e, "iridescenceThicknessMinimum", info ? (double)t->bias : fmin(100, max));
+    set_number(e, "iridescenceThicknessMaximum", max);
     if (info)
       json_object_set_new(e, "iridescenceThicknessTexture", info);
   }
@@ -375,10 +375,10 @@ static void put_coated_conductor(vlExport *x, json_t *material, const vlMaterial
 }
 
 static double largest_factor(const json_t *color) {
-  double most = 0;
+  double max = 0;
   for (size_t i = 0; i < 3; i++)
-    most = fmax(most, json_number_value(json_array_get(color, i)));
-  return most;
+    max = fmax(max, json_number_value(json_array_get(color, i)));
+  return max;
 }
 
 static void scale_factor(json_t *color, double by) {
@@ -462,8 +462,8 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
     rgb[0] = rgb[1] = rgb[2] = 1;
     t = &image;
   }
-  double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
-  if (!(most > 0))
+  double max = fmax(rgb[0], fmax(rgb[1], rgb[2])), scale = e->scale;
+  if (!(max > 0))
     return;
   if (!isnan(e->power))
     vl_export_lose(x, "area lights given by their power: radiance 1 is written");
@@ -474,7 +474,7 @@ static void put_emission(vlExport *x, json_t *material, const vlEmissionDef *e,
   if (e->spread < 3.1415f)
     vl_export_lose(x, "spreads of area lights: the same radiance in all directions");
   json_t *factor = json_array(), *info = t ? vl_gltf_texture_info(x, t, false) : NULL;
-  double over = most * scale > 1 ? most * scale : 1;
+  double over = max * scale > 1 ? max * scale : 1;
   for (int i = 0; i < 3; i++)
     json_array_append_new(factor, json_real(unit((double)rgb[i] * scale / over)));
   json_object_set_new(material, "emissiveFactor", factor);

@@ -176,8 +176,8 @@ static bool put_lamp(vlExport *x, const vlLightDef *d, json_t *lights, json_t *n
   size_t size;
   float rgb[3];
   vl_export_light_rgb(&d->color, rgb);
-  float most = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
-  if (!(most > 0.0f))
+  float max = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+  if (!(max > 0.0f))
     return true;
   if (!lamp_file(x, d, &data, &size, &owned))
     return false;
@@ -192,9 +192,9 @@ static bool put_lamp(vlExport *x, const vlLightDef *d, json_t *lights, json_t *n
     return !ies;
   if (!isnan(d->power))
     vl_export_lose(x, "the power of lamp files: that of the file is written");
-  const float color[3] = {rgb[0] / most, rgb[1] / most, rgb[2] / most};
+  const float color[3] = {rgb[0] / max, rgb[1] / max, rgb[2] / max};
   json_t *node =
-      lamp_node(d, (json_int_t)json_array_size(lights), color, (double)most * (double)d->scale);
+      lamp_node(d, (json_int_t)json_array_size(lights), color, (double)max * (double)d->scale);
   json_array_append_new(lights, profile);
   vl_gltf_put_node(x, nodes, node);
   return true;
@@ -237,8 +237,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
       continue;
     }
     vl_export_light_rgb(&d->color, rgb);
-    double most = fmax(rgb[0], fmax(rgb[1], rgb[2])), intensity = most * d->scale;
-    if (!(most > 0))
+    double max = fmax(rgb[0], fmax(rgb[1], rgb[2])), intensity = max * d->scale;
+    if (!(max > 0))
       continue;
     if (!isnan(d->illuminance))
       intensity *= d->illuminance;
@@ -248,9 +248,8 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
       intensity *= d->power / (d->kind == VL_LIGHT_SPOT ? cone : 4 * 3.14159265358979);
       vl_export_lose(x, "lights given by their power: an approximate intensity is written");
     }
-    json_t *light =
-        json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color", rgb[0] / most,
-                  rgb[1] / most, rgb[2] / most, "intensity", intensity);
+    json_t *light = json_pack("{s:s,s:[f,f,f],s:f}", "type", types[d->kind], "color",
+                              rgb[0] / max, rgb[1] / max, rgb[2] / max, "intensity", intensity);
     if (d->kind == VL_LIGHT_SPOT) {
       if (vl_stretch(d->world_from_light).is_skewed)
         vl_export_lose(x, "spots in frames that are skewed or scaled unevenly: a round cone");

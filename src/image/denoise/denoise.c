@@ -175,14 +175,14 @@ static ptrdiff_t index_of(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
 /* The largest disparity in the image; 1 without features. read_row raises disparities below a
  * thousandth of it to that value, also the 0 of pixels that hit nothing. */
 static float find_nearest(const Denoise *d) {
-  float most = 0.0f;
+  float max = 0.0f;
   for (uint32_t y = 0; y < d->planes[0].height && d->channels.features; y++)
     for (uint32_t x = 0; x < d->planes[0].width; x++) {
       float v = get(d, x, y, d->channels.feature[VL_DENOISE_FEATURES - 1]);
-      if (isfinite(v) && v > most)
-        most = v;
+      if (isfinite(v) && v > max)
+        max = v;
     }
-  return most > 0.0f ? most : 1.0f;
+  return max > 0.0f ? max : 1.0f;
 }
 
 /* Reads a row. Leaves the means of R, G and B in the plane result[1], for the search of
@@ -466,9 +466,9 @@ static void write_row(const Denoise *d, uint32_t y, vlImage *clean) {
     if (!valid)
       nearest_valid(p, p->result, at, filled, variance);
     for (int c = 0; c < COLOR; c++) {
-      float own = p->color[c][at], least = own < 0.0f ? own : 0.0f,
+      float own = p->color[c][at], min = own < 0.0f ? own : 0.0f,
             v = valid ? p->result[c][at] : filled[c];
-      to[c] = v > least ? v : least;
+      to[c] = v > min ? v : min;
       if (error >= 0)
         to[error + c] = valid ? sqrtf(VL_DENOISE_CORRELATION * p->noise[c][at]) : 0.0f;
     }

@@ -182,12 +182,12 @@ static Used used_features(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
           high[i] = row[i] > high[i] ? row[i] : high[i];
         }
       }
-    float least = low[0], most = high[0];
+    float min = low[0], max = high[0];
     for (int i = 1; i < N; i++) {
-      least = low[i] < least ? low[i] : least;
-      most = high[i] > most ? high[i] : most;
+      min = low[i] < min ? low[i] : min;
+      max = high[i] > max ? high[i] : max;
     }
-    if (!(most - least < SAME))
+    if (!(max - min < SAME))
       used.index[used.count++] = k;
   }
   return used;

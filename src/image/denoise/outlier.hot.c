@@ -41,9 +41,9 @@ void vl_denoise_cap(const vlDenoisePlanes *p, uint32_t y) {
     third_neighbour(p->result[1] + at, p->stride, third);
     /* must vectorise (gcc) */
     VL_SIMD for (int i = 0; i < N; i++) {
-      float v = (r[i] + g[i] + b[i]) * (1.0f / 3.0f), most = 4.0f * third[i];
+      float v = (r[i] + g[i] + b[i]) * (1.0f / 3.0f), max = 4.0f * third[i];
       float variance = (vr[i] + vg[i] + vb[i]) * (1.0f / 3.0f);
-      float factor = most < v ? most / v : 1.0f;
+      float factor = max < v ? max / v : 1.0f;
       to[i] = variance > 0.25f * v * v ? factor : 1.0f;
     }
   }

@@ -10,10 +10,10 @@ _Static_assert((int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH >= (int)REACH,
 /* The fourth smallest of the 8 values at a distance of REACH in x, y or both, for N pixels:
  * also at a straight edge, one of the pixel's own side. */
 static void surrounding(const float *from, ptrdiff_t stride, float to[N]) {
-  float least[RANK][N];
+  float min[RANK][N];
   for (int r = 0; r < RANK; r++)
     for (int i = 0; i < N; i++)
-      least[r][i] = 0x1p127f;
+      min[r][i] = 0x1p127f;
   for (int k = 0; k < 9; k++) {
     const float *around = from + (k / 3 - 1) * REACH * stride + (k % 3 - 1) * REACH;
     if (k == 4)
@@ -22,14 +22,14 @@ static void surrounding(const float *from, ptrdiff_t stride, float to[N]) {
     VL_SIMD for (int i = 0; i < N; i++) {
       float v = around[i];
       for (int r = 0; r < RANK; r++) {
-        float low = v < least[r][i] ? v : least[r][i], high = v < least[r][i] ? least[r][i] : v;
-        least[r][i] = low;
+        float low = v < min[r][i] ? v : min[r][i], high = v < min[r][i] ? min[r][i] : v;
+        min[r][i] = low;
         v = high;
       }
     }
   }
   for (int i = 0; i < N; i++)
-    to[i] = least[RANK - 1][i];
+    to[i] = min[RANK - 1][i];
 }
 
 /* Standard errors become at least 0.9 of those around, but not for that more than 0.63 of the
@@ -44,9 +44,9 @@ void vl_denoise_raise(const vlDenoisePlanes *p, uint32_t y) {
       surrounding(own, p->stride, around);
       /* must vectorise (gcc) */
       VL_SIMD for (int i = 0; i < N; i++) {
-        float least = 0.8f * around[i], most = 0.4f * value[i] * value[i];
-        least = least < most ? least : most;
-        to[i] = own[i] > least ? own[i] : least;
+        float min = 0.8f * around[i], max = 0.4f * value[i] * value[i];
+        min = min < max ? min : max;
+        to[i] = own[i] > min ? own[i] : min;
       }
     }
 }

@@ -153,9 +153,9 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, size_t index) {
 
 /* ---- reading ----------------------------------------------------------------------------- */
 
-/* most: of the signed type. */
-static float from_signed(float value, float most, bool normalized) {
-  return normalized ? fmaxf(value / most, -1.0f) : value;
+/* max: of the signed type. */
+static float from_signed(float value, float max, bool normalized) {
+  return normalized ? fmaxf(value / max, -1.0f) : value;
 }
 
 static float read_float(const uint8_t *p, uint32_t type, bool normalized) {

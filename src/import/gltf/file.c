@@ -71,12 +71,12 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
     return vl_gltf_fail(&g->top, "not glTF: the JSON is not an object");
   const json_t *asset = json_object_get(g->root, "asset");
   const char *version = json_string_value(json_object_get(asset, "version"));
-  const char *least = json_string_value(json_object_get(asset, "minVersion"));
+  const char *min = json_string_value(json_object_get(asset, "minVersion"));
   if (!version)
     return vl_gltf_fail(&g->top, "asset.version: is missing: not glTF 2.0");
-  if (strncmp(least ? least : version, "2.", 2) != 0 || (least && !vl_text_is(least, "2.0")))
+  if (strncmp(min ? min : version, "2.", 2) != 0 || (min && !vl_text_is(min, "2.0")))
     return vl_gltf_fail(&g->top, "asset: glTF %s; velo reads 2.0",
-                        vl_short_text(least ? least : version).text);
+                        vl_short_text(min ? min : version).text);
   return true;
 }
 

@@ -44,8 +44,8 @@ static int choose_times(const vlGltf *g) {
       continue;
     sum += vertices_of(g, mesh);
   }
-  const size_t most = sum ? MAX_VERTICES / sum : TIMES;
-  return most >= TIMES ? TIMES : most < 3 ? 3 : (int)most;
+  const size_t max = sum ? MAX_VERTICES / sum : TIMES;
+  return max >= TIMES ? TIMES : max < 3 ? 3 : (int)max;
 }
 
 static bool longest(vlGltf *g, size_t animation) {

@@ -183,16 +183,16 @@ static bool read_sheen(const Reader *r, vlPrincipledDef *p) {
 }
 
 static bool read_iridescence(const Reader *r, vlPrincipledDef *p) {
-  float least = 100, most = 400;
+  float min = 100, max = 400;
   if (!channel(r, "iridescenceFactor", "iridescenceTexture", 0, 0.0f, &p->iridescence) ||
       !vl_gltf_float(r->at, "iridescenceIor", &p->iridescence_ior) ||
-      !vl_gltf_float(r->at, "iridescenceThicknessMinimum", &least) ||
-      !vl_gltf_float(r->at, "iridescenceThicknessMaximum", &most))
+      !vl_gltf_float(r->at, "iridescenceThicknessMinimum", &min) ||
+      !vl_gltf_float(r->at, "iridescenceThicknessMaximum", &max))
     return false;
   p->iridescence_ior = p->iridescence_ior < 1.0f ? 1.0f : p->iridescence_ior;
-  p->iridescence_thickness = vl_float_input(most);
-  vlGltfTextureUse use = vl_gltf_use_channel(1, most - least);
-  use.bias = least;
+  p->iridescence_thickness = vl_float_input(max);
+  vlGltfTextureUse use = vl_gltf_use_channel(1, max - min);
+  use.bias = min;
   return vl_gltf_texture(r->at, "iridescenceThicknessTexture", &use,
                          &p->iridescence_thickness.texture);
 }

@@ -9,7 +9,7 @@
 
 /* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null
  * when the primitive lacks the attribute. */
-static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uint32_t least,
+static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uint32_t min,
                       uint32_t components, size_t vertices, float **out) {
   size_t index;
   const vlGltfLocation *at = VL_GLTF_KEY(up, name);
@@ -20,7 +20,7 @@ static bool attribute(vlGltf *g, const vlGltfLocation *up, const char *name, uin
   const vlGltfAccessor *a = vl_gltf_accessor(g, index);
   if (!a)
     return false;
-  if (a->matrix || a->components < least || a->components > components)
+  if (a->matrix || a->components < min || a->components > components)
     return vl_gltf_fail(at, "accessors[%zu] has %u components, %u are needed", index,
                         a->components, components);
   *out = vl_gltf_load_floats(at, index, components, vertices, NULL);

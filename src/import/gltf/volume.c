@@ -12,7 +12,7 @@
 /* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) /
  * distance per channel. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result) {
-  double distance = INFINITY, color[3] = {1, 1, 1}, most = 0;
+  double distance = INFINITY, color[3] = {1, 1, 1}, max = 0;
   float sigma[3];
   if (!vl_gltf_number(at, "attenuationDistance", &distance) ||
       !vl_gltf_numbers(at, "attenuationColor", 3, color))
@@ -22,9 +22,9 @@ bool vl_gltf_volume(vlGltf *g, const vlGltfLocation *at, vlGltfMaterial *result)
   for (int i = 0; i < 3; i++) {
     double c = color[i] > 1e-4 ? color[i] < 1 ? color[i] : 1 : 1e-4;
     sigma[i] = (float)(-vl_precise_log(c) / distance);
-    most = sigma[i] > most ? sigma[i] : most;
+    max = sigma[i] > max ? sigma[i] : max;
   }
-  if (!(most > 0))
+  if (!(max > 0))
     return true;
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
   def.source.file = g->path;

@@ -79,11 +79,11 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
   return vl_scene_copy_string(obj->scene, path);
 }
 
-static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_t most,
+static bool option_numbers(vlObj *obj, const char *name, uint32_t min, uint32_t max,
                            double *values) {
   uint32_t count = 0;
   /* reads as many numbers as there are; a name or an option follows */
-  for (; count < most; count++) {
+  for (; count < max; count++) {
     char *const at = obj->at;
     uint32_t one;
     if (!vl_obj_numbers(obj, 1, &values[count], &one) || !one) {
@@ -91,19 +91,18 @@ static bool option_numbers(vlObj *obj, const char *name, uint32_t least, uint32_
       break;
     }
   }
-  return count >= least ||
-         vl_obj_fail(obj, "%s: %u numbers, %u are needed", name, count, least);
+  return count >= min || vl_obj_fail(obj, "%s: %u numbers, %u are needed", name, count, min);
 }
 
 static bool option_word(vlObj *obj, const char *name, const char **word, size_t *n) {
   return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
 }
 
-/* The options before an image's name. Those of `most` 0 are followed by a word, others by
+/* The options before an image's name. Those of `max` 0 are followed by a word, others by
  * numbers, of which the first are `standard` if there are fewer. */
 typedef struct Option {
   const char *name, *label; /* label: in messages */
-  uint32_t least, most;
+  uint32_t min, max;
   double standard;
 } Option;
 
@@ -154,14 +153,14 @@ static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
     obj->at = at;
     return false;
   }
-  if (!o->most) {
+  if (!o->max) {
     *fine = option_word(obj, o->label, &value, &n);
     if (*fine)
       set_word(map, o->name, value, n);
     return true;
   }
   double v[3] = {o->standard, o->standard, o->standard};
-  *fine = option_numbers(obj, o->label, o->least, o->most, v);
+  *fine = option_numbers(obj, o->label, o->min, o->max, v);
   set_numbers(map, o->name, v);
   return true;
 }

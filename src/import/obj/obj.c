@@ -123,11 +123,11 @@ char *vl_obj_rest(vlObj *obj) {
   return obj->at;
 }
 
-bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count) {
+bool vl_obj_numbers(vlObj *obj, uint32_t max, double *values, uint32_t *count) {
   *count = 0;
   for (;;) {
     skip_blanks(obj);
-    if (obj->at >= obj->end || *count == most)
+    if (obj->at >= obj->end || *count == max)
       return true;
     const char *p = obj->at;
     if (!vl_number_scan(&p, obj->end, &values[*count]) || (p < obj->end && !is_blank(*p)))
@@ -139,16 +139,15 @@ bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count) 
   }
 }
 
-static bool numbers(vlObj *obj, const char *what, uint32_t least, uint32_t most, double *values,
+static bool numbers(vlObj *obj, const char *what, uint32_t min, uint32_t max, double *values,
                     uint32_t *count) {
-  if (!vl_obj_numbers(obj, most, values, count)) {
+  if (!vl_obj_numbers(obj, max, values, count)) {
     const char *word;
     size_t n = vl_obj_next_word(obj, &word);
     return vl_obj_fail(obj, "%s: \"%s\" is not a finite number", what,
                        vl_short_text_of(word, n).text);
   }
-  return *count >= least ||
-         vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, least);
+  return *count >= min || vl_obj_fail(obj, "%s: %u numbers, %u are needed", what, *count, min);
 }
 
 bool vl_obj_push(vlObj *obj, vlObjRows *rows, uint32_t size, const double *row,
@@ -176,7 +175,7 @@ static bool read_vertex(vlObj *obj) {
   if (!numbers(obj, "v", 3, 7, v, &count))
     return false;
   size_t before = obj->positions.count;
-  if (!before && fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))) >= VL_FAR_LEAST)
+  if (!before && fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))) >= VL_MIN_FAR)
     vl_obj_find_origin(obj);
   vl_sub3(v, obj->origin, v);
   if (!vl_obj_push(obj, &obj->positions, 3, v, "vertices"))
@@ -213,11 +212,11 @@ static bool is_broken(vlObj *obj, double v[3]) {
 }
 
 /* Reads a uv or a normal, of which `size` numbers are kept. */
-static bool read_row(vlObj *obj, const char *what, uint32_t least, vlObjRows *rows,
-                     uint32_t size, const char *plural) {
+static bool read_row(vlObj *obj, const char *what, uint32_t min, vlObjRows *rows, uint32_t size,
+                     const char *plural) {
   double v[3] = {0, 0, 0};
   uint32_t count;
-  return (is_broken(obj, v) || numbers(obj, what, least, 3, v, &count)) &&
+  return (is_broken(obj, v) || numbers(obj, what, min, 3, v, &count)) &&
          vl_obj_push(obj, rows, size, v, plural);
 }
 

@@ -139,8 +139,8 @@ bool vl_obj_statement(vlObj *obj, char **from, char *end);
 size_t vl_obj_word(vlObj *obj, const char **word);
 /* The same without reading past it. */
 size_t vl_obj_next_word(vlObj *obj, const char **word);
-/* Reads up to `most` numbers; *count receives how many. False when a word is not a number. */
-bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count);
+/* Reads up to `max` numbers; *count receives how many. False when a word is not a number. */
+bool vl_obj_numbers(vlObj *obj, uint32_t max, double *values, uint32_t *count);
 /* The rest of the statement without surrounding blanks, zero-terminated. */
 char *vl_obj_rest(vlObj *obj);
 /* Index of the material of that name. A new name adds a material. UINT32_MAX after an error. */

@@ -10,7 +10,7 @@
 /* The number of files is not limited. Text that is read again is, since a few small files that
  * include each other twice can stand for any amount. Each repeated file counts as LEAST_BYTES
  * or more. */
-enum { MAX_DEPTH = 64, MAX_REPEATED_MEGABYTES = 1024, LEAST_BYTES = 256, MAX_PATH = 4096 };
+enum { MAX_DEPTH = 64, MAX_REPEATED_MEGABYTES = 1024, MIN_BYTES = 256, MAX_PATH = 4096 };
 
 /* ---- files that were read ---------------------------------------------------------------- */
 
@@ -58,7 +58,7 @@ static bool within_limits(vlParser *parser, vlParserFile *parent, vlSource at, u
   bool again = false, deep = depth > MAX_DEPTH;
   if (!remember(parser, info, &again))
     return vl_parse_fail_memory(parent);
-  uint64_t bytes = info->st_size > LEAST_BYTES ? (uint64_t)info->st_size : LEAST_BYTES;
+  uint64_t bytes = info->st_size > MIN_BYTES ? (uint64_t)info->st_size : MIN_BYTES;
   if (again && !deep)
     parser->repeated += bytes;
   bool long_text = parser->repeated > (uint64_t)MAX_REPEATED_MEGABYTES << 20;

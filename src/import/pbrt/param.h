@@ -105,7 +105,7 @@ bool vl_dict_float(vlDict *dict, const char *name, float *value);
 bool vl_dict_double(vlDict *dict, const char *name, double *value);
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
 /* integer >= least */
-bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value);
+bool vl_dict_count(vlDict *dict, const char *name, int32_t min, uint32_t *value);
 bool vl_dict_bool(vlDict *dict, const char *name, bool *value);
 bool vl_dict_string(vlDict *dict, const char *name, const char **value);
 /* exactly count numbers, at most 16 */

@@ -183,11 +183,11 @@ bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value) {
   return p != NULL;
 }
 
-bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value) {
+bool vl_dict_count(vlDict *dict, const char *name, int32_t min, uint32_t *value) {
   vlParam *p = vl_dict_find_counted(dict, name, VL_BIT_INTEGER, 1);
   if (!p)
     return false;
-  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = least, .high = (double)INFINITY};
+  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = min, .high = (double)INFINITY};
   const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = p->integers.items[0]};
   char what[200];
   char message[VL_GIVEN_MESSAGE];

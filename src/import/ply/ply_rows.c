@@ -211,10 +211,10 @@ static uint64_t copy_triangles(vlPlyReader *r, const vlPlyElement *e) {
                r->has_vertices && vl_ply_type_size(p->count_type) == 1 &&
                (p->type == VL_PLY_I32 || p->type == VL_PLY_U32) && !m->triangles;
   uint64_t room = m->index_capacity / 3, left = (uint64_t)(r->end - r->at) / 13, i = 0;
-  uint64_t most = e->count < room ? e->count : room;
-  most = most < left ? most : left;
-  most = most < MAX_FACES ? most : MAX_FACES;
-  for (; plain && i < most && *r->at == 3; i++) {
+  uint64_t max = e->count < room ? e->count : room;
+  max = max < left ? max : left;
+  max = max < MAX_FACES ? max : MAX_FACES;
+  for (; plain && i < max && *r->at == 3; i++) {
     uint32_t *to = m->indices + 3 * i;
     memcpy(to, r->at + 1, 12);
     if (to[0] >= m->vertices || to[1] >= m->vertices || to[2] >= m->vertices)

@@ -7,7 +7,7 @@
 /* Rays that are not traced: origins that are farther away than this along an axis, directions
  * with a larger component. */
 #define VL_CAST_FAR 1.8e18
-#define VL_CAST_LONGEST 1e300
+#define VL_MAX_CAST_LENGTH 1e300
 
 /* Rays and their hits; n <= VL_BATCH. */
 typedef struct vlCastBatch {

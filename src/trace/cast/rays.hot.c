@@ -86,7 +86,7 @@ bool vl_cast_check(vlCastBatch *b) {
     double sum = (b->d[0][i] - b->d[0][i]) + (b->d[1][i] - b->d[1][i]) +
                  (b->d[2][i] - b->d[2][i]) + (b->o[0][i] - b->o[0][i]) +
                  (b->o[1][i] - b->o[1][i]) + (b->o[2][i] - b->o[2][i]);
-    uint32_t fine = (sum == 0.0) & (length > 0.0) & (length <= VL_CAST_LONGEST) &
+    uint32_t fine = (sum == 0.0) & (length > 0.0) & (length <= VL_MAX_CAST_LENGTH) &
                     (reach < VL_CAST_FAR) & (b->end[i] > b->start[i]) &
                     (b->start[i] < (double)VL_INFINITY);
     wrong |= !fine;
@@ -100,14 +100,14 @@ static void normalize(vlCastBatch *b, uint32_t first, uint32_t last) {
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = first; i < last; i++) {
-    double most = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
-    double scale = 1.0 / most;
+    double max = largest(b->d[0][i], b->d[1][i], b->d[2][i]);
+    double scale = 1.0 / max;
     double x = b->d[0][i] * scale, y = b->d[1][i] * scale, z = b->d[2][i] * scale;
     double l = __builtin_sqrt(x * x + y * y + z * z), unit = 1.0 / l;
     b->d[0][i] = x * unit;
     b->d[1][i] = y * unit;
     b->d[2][i] = z * unit;
-    b->length[i] = most * l;
+    b->length[i] = max * l;
     b->start[i] = b->start[i] * b->length[i];
     b->end[i] = b->end[i] * b->length[i];
   }
@@ -135,12 +135,12 @@ static void round_rays(vlCastBatch *b, vlPaths *p, uint32_t first, uint32_t last
 /* Whether most neighbours start close to each other, as the world is large, in directions
  * within 8 degrees. 64 pairs or more are looked at, if there are so many. */
 static bool are_coherent(const vlWorld *world, uint32_t n, const vlPaths *p) {
-  const float close = 0.02f * world->radius, least_cosine = 0.99f;
+  const float close = 0.02f * world->radius, min_cosine = 0.99f;
   uint32_t similar = 0, pairs = 0, step = n < 64 ? 1 : n / 64;
   for (uint32_t i = 1; i < n; i += step) {
     vlVec3 a = vl_row3(&p->d, i), b = vl_row3(&p->d, i - 1);
     vlVec3 apart = vl_sub(vl_row3(&p->o, i), vl_row3(&p->o, i - 1));
-    similar += vl_dot(a, b) > least_cosine && vl_length2(apart) <= close * close;
+    similar += vl_dot(a, b) > min_cosine && vl_length2(apart) <= close * close;
     pairs++;
   }
   return 8 * similar >= 7 * pairs && pairs;

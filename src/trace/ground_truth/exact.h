@@ -73,7 +73,7 @@ static inline double exact_curved_distance(const vlWorldShape *s, const vlWorldI
    * four steps up to 1 / 64. */
   for (double reach = VL_REFIND; reach < 0.01; reach *= 32.0)
     if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach),
-                           t * (1.0 + reach) + VL_REFIND_LEAST, &hit))
+                           t * (1.0 + reach) + VL_MIN_REFIND, &hit))
       return hit.t;
   return t;
 }

@@ -70,10 +70,10 @@ static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, v
 /* Moves to the next collision. Returns false at the end of the segment. */
 static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
   for (;;) {
-    float most = k->majorant[f->hero], length = k->end - k->t;
+    float max = k->majorant[f->hero], length = k->end - k->t;
     if (length > 0.0f) {
-      if (most * length > k->depth) {
-        float distance = vl_min(k->depth / most, length);
+      if (max * length > k->depth) {
+        float distance = vl_min(k->depth / max, length);
         pass(m, k->majorant, distance, f);
         k->t += distance;
         k->depth = 0.0f;
@@ -81,7 +81,7 @@ static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
         return true;
       }
       pass(m, k->majorant, length, f);
-      k->depth -= most * length;
+      k->depth -= max * length;
     }
     float majorant;
     if (!vl_majorant_next(&k->walk, &k->t, &k->end, &majorant))

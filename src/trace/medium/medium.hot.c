@@ -217,9 +217,9 @@ static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool 
   for (uint32_t i = 0; i < f->n; i++) {
     if (!k.flies[i])
       continue;
-    float most = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
+    float max = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
     bool scattered = m->scatters && k.scatters[i];
-    bool dark = (scattered || !m->scatters) && !(most > 0.0f);
+    bool dark = (scattered || !m->scatters) && !(max > 0.0f);
     f->end[i] = scattered ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
     if (dark)
       f->end[i] = VL_FLIGHT_ENDED;

@@ -108,10 +108,10 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
   vl_draw_2d(t, n, p, dimension + VL_DIM_BSDF_UV, u.u1, u.u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    float most = vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]);
+    float max = vl_largest4(p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]);
     vl_note_unsound(t, p, i);
-    float survive = vl_roulette_survival(most * p->eta_scale[i], depth);
-    if (!(most > 0.0f) || !(u.u0[i] < survive))
+    float survive = vl_roulette_survival(max * p->eta_scale[i], depth);
+    if (!(max > 0.0f) || !(u.u0[i] < survive))
       continue;
     vlVec3 d = vl_row3(&p->d, i);
     float g = t->world->media.items[rows->medium[i]].g;

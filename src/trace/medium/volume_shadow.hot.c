@@ -51,8 +51,8 @@ static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
     vl_attenuate(t, f);
     for (uint32_t j = 0; j < k->count; j++) {
       uint32_t i = k->open[j];
-      float most = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
-      if (k->x.shape[i] == VL_NONE || !(most > 0.0f))
+      float max = vl_largest4(f->beta[0][i], f->beta[1][i], f->beta[2][i], f->beta[3][i]);
+      if (k->x.shape[i] == VL_NONE || !(max > 0.0f))
         continue;
       if (vl_meets_interface(t->world, &k->x, i)) {
         medium[i] = vl_travel_pass(t, k, i, medium[i]);

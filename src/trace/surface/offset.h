@@ -28,7 +28,7 @@ static inline float vl_dot_of_abs(vlVec3 a, vlVec3 b) {
  * doubled. */
 static inline float vl_triangle_offset(vlVec3 g, vlVec3 p, vlVec3 p0, vlVec3 p1, vlVec3 p2,
                                        float b0, float b1, float b2, float corner_error) {
-  const float most = 1e3f;
+  const float max = 1e3f;
   vlVec3 sum = vl_vec3(vl_abs(b0 * p0.x) + vl_abs(b1 * p1.x) + vl_abs(b2 * p2.x),
                        vl_abs(b0 * p0.y) + vl_abs(b1 * p1.y) + vl_abs(b2 * p2.y),
                        vl_abs(b0 * p0.z) + vl_abs(b1 * p1.z) + vl_abs(b2 * p2.z));
@@ -43,7 +43,7 @@ static inline float vl_triangle_offset(vlVec3 g, vlVec3 p, vlVec3 p0, vlVec3 p1,
   /* 1 / sine of the largest angle */
   float steep = __builtin_sqrtf(vl_min(vl_min(q01 * q12, q12 * q20), q20 * q01));
   return 2.0f * (VL_GAMMA(7) * vl_dot_of_abs(g, sum) +
-                 VL_GAMMA(5) * reach * vl_clamp(steep, 1.0f, most) +
+                 VL_GAMMA(5) * reach * vl_clamp(steep, 1.0f, max) +
                  corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
 }
 

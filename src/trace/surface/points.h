@@ -36,7 +36,7 @@ typedef struct vlPoint {
  * t (1 -+ VL_REFIND), which allows 8 float roundings. VL_REFIND_LEAST keeps that interval from
  * being empty at t = 0. */
 #define VL_REFIND 0x1p-21
-#define VL_REFIND_LEAST 1e-37
+#define VL_MIN_REFIND 1e-37
 
 /* The start of a ray segment past t by a margin. It is larger than t_min even if t_min and
  * margin are 0. */

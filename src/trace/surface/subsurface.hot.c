@@ -139,11 +139,10 @@ static void aim_probes(const vlTracing *t, uint32_t n, uint32_t dimension, const
  * roundings of the distance: of the corners relative to o, of the normal's products, of the
  * quotient. (vl_past_crossing allows for less.) */
 static float past_on_probe(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
-  const float least = 0.01f; /* of the cosine: a bound of the margin */
+  const float min = 0.01f; /* of the cosine: a bound of the margin */
   float cosine = vl_dot(at->g, d), steep = vl_abs(cosine);
-  float t = steep > least ? vl_dot(vl_sub(at->p, o), at->g) / cosine : at->t;
-  return vl_past(t, (2.0f * at->offset + 0x1p-19f * vl_abs(at->t)) / vl_max(steep, least),
-                 t_min);
+  float t = steep > min ? vl_dot(vl_sub(at->p, o), at->g) / cosine : at->t;
+  return vl_past(t, (2.0f * at->offset + 0x1p-19f * vl_abs(at->t)) / vl_max(steep, min), t_min);
 }
 
 /* Counts the crossing `met` of probe j, and may choose it. Returns where the probe goes on. */
@@ -411,12 +410,12 @@ void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *sh = &r->at->shade;
   float(*sigma)[VL_ROW_SIZE] = sh->own + VL_S_SIGMA,
   (*albedo)[VL_ROW_SIZE] = sh->own + VL_S_ALBEDO;
-  const float most = 1e15f; /* per unit of length: its square is finite */
+  const float max = 1e15f; /* per unit of length: its square is finite */
   if (b->mfp >= 0) {
     vl_texture_spectrum(r, b->mfp, sigma);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
-        float length = vl_max(m->scale * sigma[c][i], 1.0f / most);
+        float length = vl_max(m->scale * sigma[c][i], 1.0f / max);
         sigma[c][i] = 1.0f / length;
         albedo[c][i] = vl_bssrdf_invert(b->table, sh->reflectance[c][i]);
       }
@@ -426,8 +425,8 @@ void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   vl_texture_spectrum(r, b->sigma_s, albedo);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++) {
-      float a = vl_clamp(m->scale * sigma[c][i], 0.0f, most),
-            s = vl_clamp(m->scale * albedo[c][i], 0.0f, most);
+      float a = vl_clamp(m->scale * sigma[c][i], 0.0f, max),
+            s = vl_clamp(m->scale * albedo[c][i], 0.0f, max);
       sigma[c][i] = a + s;
       albedo[c][i] = a + s > 0.0f ? vl_min(s / (a + s), 1.0f) : 0.0f;
     }

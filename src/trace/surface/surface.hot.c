@@ -296,7 +296,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   vlShapeHit hit;
   vlSurfacePoint point;
   if (vl_shape_intersect(s, prim, go, gd, *t * (1 - VL_REFIND),
-                         *t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
+                         *t * (1 + VL_REFIND) + VL_MIN_REFIND, &hit)) {
     *t = (float)hit.t;
     vl_shape_point(s, prim, &hit, &point);
   } else { /* cannot happen: the same ray hit it with the same arithmetic */

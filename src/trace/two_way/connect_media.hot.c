@@ -8,7 +8,7 @@
 
 /* A connection that promises less than LITTLE times the radiance that its path has found
  * already plays Russian roulette. Of the values tried, this one has nearly no more noise. */
-static const float LITTLE = 0.1f, LEAST_SURVIVAL = 0.1f;
+static const float LITTLE = 0.1f, MIN_SURVIVAL = 0.1f;
 
 /* The transmittance between ends in the same uniform medium is known, up to what is in between.
  * Elsewhere 1 stands for it: where the worth is too small, the few connections that are made
@@ -72,7 +72,7 @@ float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected) 
   for (int c = 0; c < 4; c++)
     known += t->batch->radiance[c][lane];
   known *= LITTLE;
-  return expected < known ? vl_max(expected / known, LEAST_SURVIVAL) : 1.0f;
+  return expected < known ? vl_max(expected / known, MIN_SURVIVAL) : 1.0f;
 }
 
 void vl_push_connection(const vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,

@@ -72,8 +72,8 @@ static uint32_t set_out(const vlTracing *t, const vlLightBatch *b, vlTwoWayLanes
       lambda[c] = rgb ? 0.0f : lanes->lambda[c][i];
     vlEmission e =
         vl_emission_sample(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
-    float most = vl_largest_of4(e.flux);
-    if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY))
+    float max = vl_largest_of4(e.flux);
+    if (!e.valid || !(max > 0.0f) || !(max < VL_INFINITY))
       continue;
     if (vl_has_media(t) && !start_medium(t, &e, &starts->medium[i]))
       continue;

@@ -15,17 +15,17 @@ enum { LISTED_WORK = 32 }; /* a photon with a BSDF takes as long as so many visi
  * visits cell by cell; a cell is as wide as the ball. */
 typedef struct Near {
   vlVec3 p;
-  uint32_t medium, most; /* most: largest number of bounces of a photon */
+  uint32_t medium, max; /* max: largest number of bounces of a photon */
   int32_t corner[3], cell[3];
   uint32_t next, end, seen; /* seen: photons of the visited cells */
   int visited;              /* of the 8 cells that the ball can meet */
 } Near;
 
-static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32_t most) {
+static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32_t max) {
   float radius = __builtin_sqrtf(map->radius2);
   return (Near){.p = p,
                 .medium = medium,
-                .most = most,
+                .max = max,
                 .corner = {vl_photon_cell(p.x - radius, map->inv_cell),
                            vl_photon_cell(p.y - radius, map->inv_cell),
                            vl_photon_cell(p.z - radius, map->inv_cell)}};
@@ -34,7 +34,7 @@ static Near near_start(const vlPhotonMap *map, vlVec3 p, uint32_t medium, uint32
 /* Whether the photon is in the ball, in the medium, and not of too long a path. */
 static bool near_fits(const vlPhotonMap *map, const Near *near, const vlPhoton *x) {
   vlVec3 to = vl_vec3(x->p[0] - near->p.x, x->p[1] - near->p.y, x->p[2] - near->p.z);
-  if (!(vl_length2(to) < map->radius2) || x->bounce > near->most || x->medium != near->medium)
+  if (!(vl_length2(to) < map->radius2) || x->bounce > near->max || x->medium != near->medium)
     return false;
   for (int k = 0; k < 3; k++)
     if (vl_photon_cell(x->p[k], map->inv_cell) != near->cell[k])
@@ -118,10 +118,10 @@ static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMe
   const vlPaths *p = v->paths;
   const vlSurface *f = &v->at->surface;
   const vlPhoton *photons = t->def->two_way->map.photons;
-  uint32_t most = 0;
+  uint32_t max = 0;
   for (uint32_t i = 0; i < n; i++)
-    most = list->count[i] > most ? list->count[i] : most;
-  for (uint32_t round = 0; round < most; round++) {
+    max = list->count[i] > max ? list->count[i] : max;
+  for (uint32_t round = 0; round < max; round++) {
     for (uint32_t i = 0; i < n; i++) {
       bool has = round < list->count[i];
       const float *w = has ? photons[list->pair[list->first[i] + round]].w : NULL;
@@ -146,7 +146,7 @@ static void add_listed(vlTracing *t, uint32_t n, const vlTwoWayVertices *v, vlMe
 
 /* How many bounces a photon may have so that the whole path has at most max_depth. depth:
  * bounces of the camera path. */
-static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
+static uint32_t max_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) {
   bool apart = t->def->two_way->apart;
   return t->def->max_depth - (depth - (apart ? t->lanes->smooth[lane] : 0));
 }
@@ -167,7 +167,7 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoWayVert
       continue;
     bool diffuse = t->world->materials.items[at->hits.material[i]].diffuse;
     float sum[4] = {0, 0, 0, 0};
-    Near near = near_start(map, vl_row3(&f->p, i), 0, most_bounces(t, p->lane[i], depth));
+    Near near = near_start(map, vl_row3(&f->p, i), 0, max_bounces(t, p->lane[i], depth));
     list->first[i] = listed;
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       if (diffuse) {
@@ -198,7 +198,7 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth, const vlTwoW
     uint32_t lane = p->lane[i], medium = v->rows->medium[i];
     float sum[4] = {0, 0, 0, 0}, g = t->world->media.items[medium].g;
     vlVec3 d = vl_row3(&p->d, i);
-    Near near = near_start(map, vl_row3(&p->o, i), 1 + medium, most_bounces(t, lane, depth));
+    Near near = near_start(map, vl_row3(&p->o, i), 1 + medium, max_bounces(t, lane, depth));
     for (uint32_t j; (j = near_next(map, &near)) != VL_NONE;) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_load3(x->w)));

@@ -27,10 +27,10 @@ typedef struct Crossing {
 /* a, b, c, e: the sides on which the ray passes the edges. */
 static inline Crossing cross(float a, float b, float c, float e, vlVec3 normal, vlVec3 corner,
                              float tolerance, vlVec3 o, vlVec3 d) {
-  float least = vl_min(vl_min(a, b), vl_min(c, e)), most = vl_largest4(a, b, c, e);
+  float min = vl_min(vl_min(a, b), vl_min(c, e)), max = vl_largest4(a, b, c, e);
   float speed = vl_dot(normal, d), height = vl_dot(normal, vl_sub(corner, o));
   float wide = tolerance * vl_abs(speed);
-  int inside = (least >= -wide) | (most <= wide);
+  int inside = (min >= -wide) | (max <= wide);
   Crossing at = {speed < 0.0f ? -height : height, inside ? vl_abs(speed) : 0.0f};
   return at;
 }

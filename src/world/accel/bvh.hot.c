@@ -138,14 +138,14 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
     float v = side(ax, ay, az, bx, by, bz, dx, dy, dz);
     float w = side(bx, by, bz, cx, cy, cz, dx, dy, dz);
     float wide = 0x1p-23f * fabsf(u + v + w);
-    float least = vl_min(vl_min(u, v), w), most = vl_max(vl_max(u, v), w);
+    float min = vl_min(vl_min(u, v), w), max = vl_max(vl_max(u, v), w);
     float nx = normal(cy - ay, cz - az, ay - by, az - bz, by - cy, bz - cz);
     float ny = normal(cz - az, cx - ax, az - bz, ax - bx, bz - cz, bx - cx);
     float nz = normal(cx - ax, cy - ay, ax - bx, ay - by, bx - cx, by - cy);
     float speed = dot(nx, ny, nz, dx, dy, dz), height = dot(ax, ay, az, nx, ny, nz),
           at = height / speed;
     t[k] = at;
-    int inside = (least >= -wide) | (most <= wide),
+    int inside = (min >= -wide) | (max <= wide),
         crosses = (speed != 0.0f) & (fabsf(speed) < 0x1p127f);
     met |= inside & crosses & (low <= at) & (at <= high) ? bits[k] : 0;
   }

@@ -92,8 +92,8 @@ static void *take(Builder *b, Arena *arena, size_t size) {
 }
 
 static Box empty_box(void) {
-  const float most = INFINITY;
-  return (Box){{most, most, most, most}, {-most, -most, -most, -most}};
+  const float max = INFINITY;
+  return (Box){{max, max, max, max}, {-max, -max, -max, -max}};
 }
 
 static inline void extend(Box *b, const Box *other) {
@@ -182,9 +182,9 @@ static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
     }
   }
   for (int i = 0; i < 3 && (placed || keys > 1); i++) {
-    float most =
+    float max =
         fmaxf(fmaxf(-box[0].low[i], box[0].high[i]), fmaxf(-box[1].low[i], box[1].high[i]));
-    float wide = beside[i] + 0x1p-20f * (beside[i] + most);
+    float wide = beside[i] + 0x1p-20f * (beside[i] + max);
     for (int k = 0; k < 2; k++) {
       box[k].low[i] -= wide;
       box[k].high[i] += wide;
@@ -269,7 +269,7 @@ static void decide(const Builder *b, Range *r) {
   for (int i = 1; i < 3; i++)
     if (r->centers.high[i] - r->centers.low[i] > r->centers.high[axis] - r->centers.low[axis])
       axis = i;
-  float extent = r->centers.high[axis] - r->centers.low[axis], right[BINS], least = INFINITY;
+  float extent = r->centers.high[axis] - r->centers.low[axis], right[BINS], min = INFINITY;
   r->axis = -1;
   r->leaf = r->end - r->begin <= (faces ? VL_BVH_FOUR : 1);
   if (r->leaf || r->depth >= VL_BVH_DEPTH || !(extent >= 0x1p-100f))
@@ -287,9 +287,9 @@ static void decide(const Builder *b, Range *r) {
   sum = bins[BINS];
   for (int k = 1; k < BINS; k++) {
     float cost = add_bin(&sum, &bins[k - 1]) + right[k];
-    if (!(cost < least))
+    if (!(cost < min))
       continue;
-    least = cost;
+    min = cost;
     r->bin = k;
     r->axis = axis;
   }

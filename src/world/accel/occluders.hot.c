@@ -55,8 +55,8 @@ static void test_face(Block *k, const vlOccluder *f, float clear) {
           speed = sign * facing;
     float u = -sign * vl_dot(e2, q), v = sign * vl_dot(e1, q),
           height = -sign * vl_dot(normal, from);
-    float least = inside * speed;
-    int hit = (speed > k->steep[i]) & (u > least) & (v > least) & (u + v < speed - least) &
+    float min = inside * speed;
+    int hit = (speed > k->steep[i]) & (u > min) & (v > min) & (u + v < speed - min) &
               (height > k->low[i] * speed + clear) & (height + clear < k->high[i] * speed);
     k->blocked[i] |= hit;
   }

@@ -67,19 +67,19 @@ static inline bool vl_packet_is_sound(void *q) {
   const int axes[6] = {ORIGIN, ORIGIN + 1, ORIGIN + 2, DIRECTION, DIRECTION + 1, DIRECTION + 2};
   const float far = VL_RAY_FAR, *from = ray_row(q, VL_PACKET, TNEAR, 0),
               *to = ray_row(q, VL_PACKET, TFAR, 0);
-  int32_t limit, most[VL_PACKET] = {0}, bits[VL_PACKET];
+  int32_t limit, max[VL_PACKET] = {0}, bits[VL_PACKET];
   memcpy(&limit, &far, sizeof limit);
   for (int j = 0; j < 6; j++) {
     memcpy(bits, ray_row(q, VL_PACKET, axes[j], 0), sizeof bits);
     for (int k = 0; k < VL_PACKET; k++) {
       int32_t size = bits[k] & INT32_MAX;
-      most[k] = most[k] > size ? most[k] : size;
+      max[k] = max[k] > size ? max[k] : size;
     }
   }
   int wrong = 0;
   VL_SIMD
   for (int k = 0; k < VL_PACKET; k++)
-    wrong |= (most[k] >= limit) | !(from[k] >= 0.0f) | (to[k] != to[k]);
+    wrong |= (max[k] >= limit) | !(from[k] >= 0.0f) | (to[k] != to[k]);
   return !wrong;
 }
 

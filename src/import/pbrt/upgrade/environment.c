@@ -11,7 +11,7 @@
 #include "math/approx_double.h"
 #include "math/octahedral.h"
 
-enum { MAX_SIDE = 8192, LEAST_SIDE = 16, LOOKS = 3 };
+enum { MAX_SIDE = 8192, MIN_SIDE = 16, LOOKS = 3 };
 
 typedef struct Work {
   const float *pixels; /* 3 per pixel */
@@ -59,7 +59,7 @@ static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from,
 static bool convert(vlUpgrade *u, vlOldMap *map, const vlImage *from) {
   double side = sqrt((double)from->width * from->height);
   uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
-  vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE
+  vlImageDef def = vl_default_image_def(even < MIN_SIDE   ? MIN_SIDE
                                         : even > MAX_SIDE ? MAX_SIDE
                                                           : even,
                                         0, 3);

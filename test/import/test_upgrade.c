@@ -706,6 +706,48 @@ static void solids(void **state) {
   end_load(&l);
 }
 
+/* Paraboloids are z = zmax (x^2 + y^2) / radius^2 between two heights in either order. */
+static void paraboloids(void **state) {
+  (void)state;
+  Notes notes;
+  vlError error;
+  Loaded l;
+  static const struct {
+    const char *heights;
+    double low, high;
+  } cases[] = {{"\"float zmin\" 2 \"float zmax\" 1", 1, 2},
+               {"\"float zmin\" -1 \"float zmax\" 1", 0, 1},
+               {"\"float zmin\" -1 \"float zmax\" -3", -3, -1}};
+  for (int i = 0; i < 3; i++) {
+    char text[200];
+    snprintf(text, sizeof text,
+             "WorldBegin\nShape \"paraboloid\" \"float radius\" 2 \"float phimax\" 400 %s\n",
+             cases[i].heights);
+    write_file("old/p.pbrt", text);
+    assert_int_equal(upgrade("old/p.pbrt", "new/p.pbrt", false, &notes, &error), VL_OK);
+    start_load(&l);
+    l.result = vl_scene_load(l.scene, in_folder("new/p.pbrt"), NULL, &l.error);
+    assert_int_equal(l.result, VL_OK);
+    const vlShapeDef *s = &l.scene->shapes.items[0];
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t k = 0; k < s->vertices; k++) {
+      const float *p = s->positions + 3 * k;
+      double rho = hypot((double)p[0], (double)p[1]);
+      double zmax = cases[i].high;
+      assert_near(zmax * rho * rho / 4, p[2], 1e-5);
+      low = fmin(low, (double)p[2]);
+      high = fmax(high, (double)p[2]);
+    }
+    assert_near(low, cases[i].low, 1e-6);
+    assert_near(high, cases[i].high, 1e-6);
+    end_load(&l);
+  }
+  write_file("old/p.pbrt", "WorldBegin\nShape \"paraboloid\" \"float zmax\" 0\n");
+  assert_int_equal(upgrade("old/p.pbrt", "new/none.pbrt", false, &notes, &error),
+                   VL_ERROR_SCENE);
+  assert_string_equal(error.message, "paraboloid: the larger of zmin and zmax must not be 0");
+}
+
 /* Loading names the command. */
 static void recognised(void **state) {
   (void)state;
@@ -740,6 +782,6 @@ int main(void) {
       cmocka_unit_test(statements),  cmocka_unit_test(settings),     cmocka_unit_test(files),
       cmocka_unit_test(environment), cmocka_unit_test(black_bodies), cmocka_unit_test(strict),
       cmocka_unit_test(new_scene),   cmocka_unit_test(damaged),      cmocka_unit_test(solids),
-      cmocka_unit_test(recognised)};
+      cmocka_unit_test(paraboloids), cmocka_unit_test(recognised)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

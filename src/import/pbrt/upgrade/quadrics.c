@@ -95,6 +95,18 @@ static bool read_heights(vlOldStatement *s, Grid *g) {
   return found == p->count || vl_old_wrong(s, "heightfield: \"Pz\" holds no number");
 }
 
+/* As in pbrt-v3, the two heights may be in either order. z / zmax is negative on one side of
+ * the apex, where a paraboloid has no points. */
+static bool read_paraboloid(vlOldStatement *s, Grid *g) {
+  const double a = vl_old_number(s, "zmin", 0), b = vl_old_number(s, "zmax", 1);
+  g->z[0] = fmin(a, b);
+  g->z[1] = fmax(a, b);
+  if (g->z[1] > 0)
+    g->z[0] = fmax(g->z[0], 0);
+  return g->z[1] != 0 ||
+         vl_old_wrong(s, "paraboloid: the larger of zmin and zmax must not be 0");
+}
+
 static void read_point(vlOldStatement *s, const char *name, double p[3]) {
   const vlOldParam *given = vl_old_find(s, name);
   if (given && given->count == 3)
@@ -109,11 +121,12 @@ bool vl_old_mesh_of_shape(vlOldStatement *s) {
             .radius = vl_old_number(s, "radius", 1),
             .p2 = {1, 1, 1}};
   g.kind = (Kind)vl_name_index(s->name[0], names, VL_LENGTH(names));
-  g.phi = vl_old_number(s, "phimax", 360) * M_PI / 180;
-  g.z[0] = g.kind == PARABOLOID ? vl_old_number(s, "zmin", 0) : 0;
-  g.z[1] = g.kind == PARABOLOID ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
+  g.phi = fmin(fmax(vl_old_number(s, "phimax", 360), 0), 360) * M_PI / 180;
+  g.z[1] = vl_old_number(s, "height", 1);
   read_point(s, "p1", g.p1);
   read_point(s, "p2", g.p2);
+  if (g.kind == PARABOLOID && !read_paraboloid(s, &g))
+    return false;
   if (g.kind == HEIGHTFIELD && !read_heights(s, &g)) {
     vl_free(context, g.z_values);
     return false;

@@ -168,6 +168,7 @@ cp new/twice.pbrt new/wrong.pbrt
 cp new/green.pbrt green-before.pbrt
 expect_code 3 wrong "$VELO" scene upgrade old/wrong.pbrt new/wrong.pbrt
 expect_text wrong_says 'the upgraded scene is wrong here, and nothing is written'
+expect_text wrong_place "old/wrong.pbrt:$(grep -n '\"big\"' old/wrong.pbrt | cut -d: -f1):"
 check wrong_keeps cmp new/wrong.pbrt new/twice.pbrt
 { image image; printf 'Include "green.pbrt"\nInclude "bad.pbrt"\n'; } >old/wrong.pbrt
 printf 'Texture "t" "color" "constant"\nShape "sphere" "float radius" "big"\nMaterial "matte"\n' >old/bad.pbrt

@@ -186,6 +186,48 @@ static const struct {
      0},
     {"Texture \"t\" \"float\" \"marble\" \"integer octaves\" 3 \"float scale\" 2\n",
      "Texture \"t\" \"float\" \"constant\"\n", 1},
+    {"Texture \"t\" \"float\" \"uv\" \"float uscale\" 2\n",
+     "Texture \"t\" \"float\" \"constant\"\n", 1},
+    {"Texture \"t\" \"color\" \"dots\" \"float uscale\" 2 \"vector v1\" [ 1 0 0 ]\n",
+     "Texture \"t\" \"spectrum\" \"dots\" \"float uscale\" 2\n", 0},
+    {"Texture \"t\" \"float\" \"bilerp\" \"string mapping\" \"planar\" \"float uscale\" 2 "
+     "\"float udelta\" 1 \"vector v1\" [ 1 0 0 ]\n",
+     "Texture \"t\" \"float\" \"bilerp\" \"string mapping\" \"planar\" "
+     "\"float udelta\" 1 \"vector3 v1\" [ 1 0 0 ]\n",
+     0},
+    {"Texture \"t\" \"float\" \"dots\" \"string mapping\" \"spherical\" \"float udelta\" 2\n",
+     "Texture \"t\" \"float\" \"dots\" \"string mapping\" \"spherical\"\n", 0},
+    {"Texture \"t\" \"float\" \"checkerboard\" \"integer dimension\" 3 "
+     "\"string mapping\" \"uv\" \"float uscale\" 2\n",
+     "Texture \"t\" \"float\" \"checkerboard\" \"integer dimension\" 3\n", 0},
+    {"Texture \"t\" \"color\" \"constant\" \"blackbody value\" [ 3000 1 ]\n",
+     "Texture \"t\" \"spectrum\" \"constant\" \"blackbody value\" 3000\n", 0},
+    {"Material \"matte\" \"blackbody Kd\" [ 3000 .5 ]\n",
+     "Material \"diffuse\" \"blackbody reflectance\" 3000\n", 1},
+    {"Material \"matte\" \"rgb Kd\" [ 1.5 .5 1 ]\n",
+     "Material \"diffuse\" \"rgb reflectance\" [ 1 0.5 1 ]\n", 1},
+    {"Material \"matte\" \"float Kd\" 2\n",
+     "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n", 1},
+    {"Material \"translucent\" \"rgb Kd\" [ 1 1 1 ] \"rgb reflect\" [ 2 .5 0 ]\n",
+     "Material \"diffusetransmission\" \"rgb reflectance\" [ 1 0.5 0 ] "
+     "\"rgb transmittance\" [ 0.5 0.5 0.5 ]\n",
+     1},
+    {"Texture \"f\" \"float\" \"constant\"\n"
+     "Material \"substrate\" \"color Kd\" [ .5 .5 .5 ] \"float roughness\" .1 "
+     "\"float index\" 2\n"
+     "Material \"uber\" \"color Kd\" [ .5 .5 .5 ] \"float roughness\" .1 "
+     "\"texture eta\" \"f\" \"float index\" 2\n"
+     "Material \"glass\" \"float index\" 2 \"float eta\" 1.4\n",
+     "Texture \"f\" \"float\" \"constant\"\n"
+     "Material \"coateddiffuse\" \"rgb reflectance\" [ .5 .5 .5 ] \"float roughness\" .1\n"
+     "Material \"coateddiffuse\" \"rgb reflectance\" [ .5 .5 .5 ] \"float roughness\" .1\n"
+     "Material \"dielectric\" \"float eta\" 1.4\n",
+     2},
+    {"LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ]\n",
+     "LightSource \"point\" \"rgb I\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"goniometric\" \"rgb scale\" [ 1 2 3 ] \"string mapname\" \"\"\n",
+     "LightSource \"point\" \"rgb I\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"projection\" \"rgb I\" [ 1 2 3 ]\n", "", 1},
     {"Texture \"t\" \"float\" \"checkerboard\" \"string aamode\" \"none\" \"float tex1\" .3\n",
      "Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" .3\n", 0},
     {"LightSource \"point\" \"point from\" [ 1 2 3 ] \"color I\" [ 1 2 3 ] "

@@ -250,6 +250,29 @@ static int by_offset(const void *a, const void *b) {
   return x->order < y->order ? -1 : x->order > y->order;
 }
 
+uint32_t vl_old_line(const vlOldFile *file, size_t offset) {
+  size_t old = 0, new = 0;
+  VL_EACH_ITEM(const vlOldEdit, e, &file->edits) {
+    if (e->span.start < old)
+      continue; /* inside of a larger edit */
+    const size_t kept = e->span.start - old, added = strlen(e->text);
+    if (new + kept > offset)
+      break;
+    new += kept;
+    old = e->span.start;
+    if (new + added > offset) {
+      offset = new;
+      break;
+    }
+    new += added;
+    old = e->span.end;
+  }
+  uint32_t line = 1;
+  for (size_t i = 0; i < old + offset - new &&i < file->size; i++)
+    line += file->text[i] == '\n';
+  return line;
+}
+
 char *vl_old_render(vlOldFile *file, vlOldSpan span) {
   size_t size = span.end - span.start + 1;
   if (file->edits.count)

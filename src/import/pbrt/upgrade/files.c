@@ -171,14 +171,15 @@ static bool choose_name(const vlOldStatement *s, const char *path, const char *t
  * error. */
 static const vlOldInclude *read_include(const vlOldStatement *s, const char *path, bool first) {
   vlUpgrade *u = s->u;
-  char name[4096], *text = NULL;
+  vlOldFile file = {.u = u, .path = path};
+  char name[4096], *text;
   const size_t made = u->names.count;
   const uint32_t referred = u->referred;
   const bool quiet = u->quiet;
-  bool changed;
   u->depth++;
   u->quiet = quiet || !first;
-  bool fine = vl_old_upgrade_file(u, path, &text, &changed);
+  const bool fine = vl_old_upgrade_file(&file, &text), changed = file.edits.count > 0;
+  vl_old_free_file(&file);
   u->quiet = quiet;
   u->depth--;
   if (!fine)

@@ -84,13 +84,6 @@ static bool luminance(const vlOldStatement *s, const vlOldParam *p, double *fact
   return fine;
 }
 
-static void set_color(vlOldParam *p, const double rgb[3]) {
-  p->new_type = "rgb";
-  vl_old_rgb_text(rgb, p->new_value);
-  memcpy(p->number, rgb, 3 * sizeof *rgb);
-  p->count = 3;
-}
-
 /* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what
  * is not grey. */
 static bool fold_scale(vlOldStatement *s, vlOldParam *color, double more, double tint[3]) {
@@ -106,7 +99,7 @@ static bool fold_scale(vlOldStatement *s, vlOldParam *color, double more, double
     } else if (color && vl_old_is_color(color, own)) {
       for (int i = 0; i < 3; i++)
         own[i] *= rgb[i];
-      set_color(color, own);
+      vl_old_set_color(color, own);
       vl_old_note(s, "%s times scale", color->name);
     } else {
       memcpy(tint, rgb, sizeof rgb);
@@ -207,7 +200,7 @@ static bool plain_light(vlOldStatement *s) {
     return true;
   if (!color) {
     char text[VL_OLD_VALUE];
-    bool intensity = vl_text_is(s->name[0], "point") || vl_text_is(s->name[0], "spot");
+    bool intensity = vl_has_word("point spot", s->name[0]);
     return vl_old_add(s, "\"rgb %s\" %s", intensity ? "I" : "L", vl_old_rgb_text(tint, text));
   }
   vl_old_lose(s, "a colour \"scale\" of a spectrum has no counterpart: left out");
@@ -222,10 +215,24 @@ static const vlOldKind kinds[] = {{"point", NULL, point},
                                   {"infinite exinfinite", "infinite", infinite},
                                   {0}};
 
+static bool names_image(vlOldStatement *s) {
+  const vlOldParam *map = vl_old_find(s, "mapname");
+  if (!map)
+    map = vl_old_find(s, "filename");
+  return map && map->strings && map->text[0][0];
+}
+
+/* A goniometric light without an image is a point light. */
 bool vl_old_light(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
     vl_old_lose(s, "light \"%s\" has no counterpart: left out", s->name[0]);
+    return vl_old_remove(s);
+  }
+  if (kind->rows == goniometric && !names_image(s))
+    return vl_old_rename(s, 0, "point") && vl_old_light(s);
+  if (kind->rows == projection && !names_image(s)) {
+    vl_old_lose(s, "a projection without an image has no counterpart: left out");
     return vl_old_remove(s);
   }
   return plain_light(s) && vl_old_become(s, kind);

@@ -134,13 +134,6 @@ static bool glass_rule(vlOldStatement *s) {
   for (int i = 0; i < 2; i++)
     if (vl_old_drop_loses(s, names[i], 1))
       vl_old_lose(s, "glass: \"%s\" has no counterpart: clear glass is written", names[i]);
-  vlOldParam *eta = vl_old_find(s, "eta");
-  if (!eta)
-    eta = vl_old_find(s, "index");
-  if (eta && vl_old_is_texture(eta)) {
-    vl_old_lose(s, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
-    vl_old_drop(s, eta);
-  }
   return true;
 }
 
@@ -242,9 +235,36 @@ static const vlOldKind *find_kind(vlOldStatement *s, const char *name) {
   return &unknown;
 }
 
+/* pbrt-v3's "eta" precedes "index", and both may be textures; pbrt-v4 has one, a number. */
+static void plain_eta(vlOldStatement *s, const vlOldKind *kind) {
+  vlOldParam *eta = vl_old_find(s, "eta"), *index = vl_old_find(s, "index");
+  if (vl_has_word("metal hair", kind->from))
+    return;
+  if (eta)
+    vl_old_drop(s, index);
+  else
+    eta = index;
+  if (!eta || !vl_old_is_texture(eta))
+    return;
+  vl_old_lose(s, "%s: an \"eta\" of a texture has no counterpart: the default is taken",
+              kind->from);
+  vl_old_drop(s, eta);
+}
+
+/* pbrt-v3 takes reflectances above 1. */
+static void clip_reflectances(vlOldStatement *s) {
+  VL_EACH_ITEM(vlOldParam, p, &s->params) {
+    double rgb[3];
+    if (!p->dropped && vl_has_word("reflectance transmittance basecolor", p->new_name) &&
+        vl_old_is_color(p, rgb) && vl_old_clip(s, p->name, rgb))
+      vl_old_set_color(p, rgb);
+  }
+}
+
 static bool rewrite(vlOldStatement *s, const vlOldKind *kind) {
   if (kind->lost)
     vl_old_lose(s, "%s", kind->lost);
+  plain_eta(s, kind);
   if (kind->rule && !kind->rule(s))
     return false;
   const vlOldRow *rows = kind->rows;
@@ -255,7 +275,10 @@ static bool rewrite(vlOldStatement *s, const vlOldKind *kind) {
       {0}};
   if (!vl_text_is(new_kind(s, kind), kind->to))
     rows = without_coat;
-  return vl_old_rows(s, rows);
+  if (!vl_old_rows(s, rows))
+    return false;
+  clip_reflectances(s);
+  return true;
 }
 
 bool vl_old_material(vlOldStatement *s) {

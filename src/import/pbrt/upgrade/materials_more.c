@@ -129,6 +129,7 @@ bool vl_old_translucent(vlOldStatement *s) {
     double product[3];
     for (int i = 0; i < 3; i++)
       product[i] = kd[i] * share[k][i];
+    vl_old_clip(s, from[k], product);
     if (!vl_old_add(s, "\"rgb %s\" %s", to[k], vl_old_rgb_text(product, text)))
       return false;
   }

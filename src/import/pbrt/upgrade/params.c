@@ -109,6 +109,24 @@ void vl_old_value(vlOldParam *p, const char *format, ...) {
   VL_FORMAT(p->new_value, format);
 }
 
+void vl_old_set_color(vlOldParam *p, const double rgb[3]) {
+  p->new_type = "rgb";
+  vl_old_rgb_text(rgb, p->new_value);
+  memcpy(p->number, rgb, 3 * sizeof *rgb);
+  p->count = 3;
+}
+
+bool vl_old_clip(const vlOldStatement *s, const char *name, double rgb[3]) {
+  const double max = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+  char text[32];
+  if (!(max > 1))
+    return false;
+  vl_old_lose(s, "\"%s\" reflects %s of the light: 1 is taken", name, vl_old_text(max, text));
+  for (int i = 0; i < 3; i++)
+    rgb[i] = fmin(rgb[i], 1);
+  return true;
+}
+
 void vl_old_keep_first(const vlOldStatement *s, vlOldParam *p) {
   const vlOldSpan first = p->span[0];
   vl_old_value(p, "%.*s", (int)(first.end - first.start), s->file->text + first.start);
@@ -153,6 +171,19 @@ static bool unquote_bools(vlOldStatement *s, vlOldParam *p) {
   return true;
 }
 
+/* pbrt-v3's blackbodies are pairs of temperature and factor; pbrt-v4's are temperatures. Lights
+ * have a scale for the factor (lights.c). */
+static void keep_temperature(vlOldStatement *s, vlOldParam *p) {
+  const bool light = s->word->rule == vl_old_light || s->word->rule == vl_old_area_light;
+  if (light || !vl_text_is(p->type, "blackbody") || p->count < 2)
+    return;
+  if (p->count > 2)
+    vl_old_lose(s, "\"%s\" is a sum of blackbodies: the first is kept", p->name);
+  if (p->number[1] != 1)
+    vl_old_lose(s, "\"%s\": the factor of a blackbody has no counterpart: left out", p->name);
+  vl_old_keep_first(s, p);
+}
+
 bool vl_old_types(vlOldStatement *s) {
   VL_EACH_ITEM(vlOldParam, p, &s->params) {
     for (size_t k = 0; k < VL_LENGTH(types); k++)
@@ -160,6 +191,7 @@ bool vl_old_types(vlOldStatement *s) {
         p->new_type = types[k][1];
     if (vl_text_is(p->type, "xyz") && p->count == 3)
       set_rgb_of_xyz(p);
+    keep_temperature(s, p);
     if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(s, p))
       return false;
     /* a spectrum of numbers is pairs of wavelength and value; a file's name is that of a file

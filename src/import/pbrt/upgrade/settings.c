@@ -177,8 +177,11 @@ bool vl_old_accelerator(vlOldStatement *s) {
   }
 static const vlOldRow path[] = {
     {"maxdepth"}, {"rrthreshold", VL_OLD_DROP}, LIGHTS, BOUNDS, {"regularize"}, {0}};
-static const vlOldRow bdpt[] = {
-    {"maxdepth"}, LIGHTS, BOUNDS, {"visualizestrategies visualizeweights regularize"}, {0}};
+static const vlOldRow bdpt[] = {{"maxdepth"},
+                                {"lightsamplestrategy", VL_OLD_DROP},
+                                BOUNDS,
+                                {"visualizestrategies visualizeweights regularize"},
+                                {0}};
 static const vlOldRow mlt[] = {
     {"maxdepth bootstrapsamples chains mutationsperpixel largestepprobability sigma regularize"},
     {0}};
@@ -209,7 +212,7 @@ static const char whole_path[] =
 static const vlOldKind integrators[] = {
     {"path", "path", path, light_sampler},
     {"volpath", NULL, path, light_sampler},
-    {"bdpt", NULL, bdpt, light_sampler},
+    {"bdpt", NULL, bdpt},
     {"mlt", NULL, mlt},
     {"sppm photonmap", "sppm", sppm},
     {"directlighting whitted", "path", direct, NULL, whole_path},

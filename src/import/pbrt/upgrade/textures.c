@@ -112,6 +112,31 @@ static bool scale_rule(vlOldStatement *s) {
   return true;
 }
 
+/* ---- mappings ---------------------------------------------------------------------------- */
+
+static bool maps(const char *name) {
+  return vl_has_word("checkerboard bilerp imagemap uv dots", name);
+}
+
+/* pbrt-v3 ignores the numbers of other mappings; in pbrt-v4 they are errors. */
+static void drop_unused(vlOldStatement *s) {
+  static const struct {
+    const char *mapping, *names;
+  } unused[] = {{"uv", "v1 v2"},
+                {"spherical", "uscale vscale udelta vdelta v1 v2"},
+                {"cylindrical", "uscale vscale udelta vdelta v1 v2"},
+                {"planar", "uscale vscale"},
+                {"solid", "mapping uscale vscale udelta vdelta v1 v2"}};
+  const vlOldParam *given = vl_old_find(s, "mapping");
+  const char *mapping = given && given->text[0] ? given->text[0] : "uv";
+  if (vl_text_is(s->name[2], "checkerboard") && vl_old_number(s, "dimension", 2) == 3)
+    mapping = "solid";
+  for (size_t k = 0; k < VL_LENGTH(unused); k++)
+    for (size_t i = 0; vl_text_is(mapping, unused[k].mapping) && i < s->params.count; i++)
+      if (vl_has_word(unused[k].names, s->params.items[i].name))
+        vl_old_drop(s, &s->params.items[i]);
+}
+
 /* ---- others ------------------------------------------------------------------------------ */
 
 /* The value of a bool, which old files have as a word or in quotation marks. */
@@ -144,6 +169,14 @@ static bool image_rule(vlOldStatement *s) {
       return false;
   }
   return vl_old_write_file_name(s, name);
+}
+
+/* pbrt-v3 accepts some colour textures as textures of numbers, but makes none of them. */
+static bool lose_numbers(vlOldStatement *s) {
+  vl_old_lose(s, "%s of numbers has no counterpart: the constant 1 replaces it", s->name[2]);
+  for (size_t i = 0; i < s->params.count; i++)
+    vl_old_drop(s, &s->params.items[i]);
+  return vl_old_edit(s, s->names[2], "\"constant\"");
 }
 
 /* Red is u, green v: the corners of a bilinear interpolation. */
@@ -182,17 +215,6 @@ static bool noise_rule(vlOldStatement *s) {
                        s->name[0], name);
 }
 
-/* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of
- * it. */
-static bool marble_rule(vlOldStatement *s) {
-  if (is_spectrum(s))
-    return true;
-  vl_old_lose(s, "marble of numbers has no counterpart: the constant 1 replaces it");
-  for (size_t i = 0; i < s->params.count; i++)
-    vl_old_drop(s, &s->params.items[i]);
-  return vl_old_edit(s, s->names[2], "\"constant\"");
-}
-
 /* The share of a mix is a number in both; as a texture it is a float texture in both. */
 static const vlOldKind kinds[] = {
     {"constant", NULL, constant},
@@ -205,7 +227,7 @@ static const vlOldKind kinds[] = {
     {"dots", NULL, dots},
     {"fbm wrinkled", NULL, noise, noise_rule},
     {"windy", NULL, NULL, noise_rule},
-    {"marble", NULL, marble, marble_rule},
+    {"marble", NULL, marble},
     {"ptex", NULL, ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
     {0}};
 
@@ -246,8 +268,12 @@ static bool keep(const vlOldStatement *s) {
 
 bool vl_old_texture(vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
+  if (!is_spectrum(s) && vl_has_word("uv marble", s->name[2]))
+    return lose_numbers(s);
   if (kind && kind->lost)
     vl_old_lose(s, "%s", kind->lost);
+  if (kind && maps(s->name[2]))
+    drop_unused(s);
   if (kind && kind->rule && !kind->rule(s))
     return false;
   if (vl_text_is(s->name[1], "color") && !vl_old_rename(s, 1, "spectrum"))

@@ -93,36 +93,38 @@ static bool read_all(vlOldFile *file) {
   return true;
 }
 
-bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed) {
-  vlOldFile file = {.u = u, .path = path};
+bool vl_old_upgrade_file(vlOldFile *file, char **text) {
+  vlUpgrade *u = file->u;
   vlError error = {0};
-  char *data = NULL;
   *text = NULL;
-  vlResult r = u->depth ? vl_file_read(u->context, path, true, &data, &file.size, &error)
-                        : vl_file_read_given(u->context, path, true, &data, &file.size, &error);
+  vlResult r =
+      u->depth
+          ? vl_file_read(u->context, file->path, true, &file->text, &file->size, &error)
+          : vl_file_read_given(u->context, file->path, true, &file->text, &file->size, &error);
   if (r != VL_OK)
-    return vl_old_fail(&file, r, 0, 0, "%s", error.message);
-  file.text = data;
-  file.words = vl_alloc(u->context, file.size + 1);
-  bool fine = file.words || vl_old_fail_memory(u);
-  if (fine) {
-    memcpy(file.words, data, file.size + 1);
-    if (!u->depth) {
-      u->subsurface = strstr(data, "subsurface\"") != NULL;
-      u->is_old = vl_old_scene_text(file.words, file.size).version != 0;
-      memcpy(file.words, data, file.size + 1);
-    }
-    fine = read_all(&file);
+    return vl_old_fail(file, r, 0, 0, "%s", error.message);
+  file->words = vl_alloc(u->context, file->size + 1);
+  if (!file->words)
+    return vl_old_fail_memory(u);
+  memcpy(file->words, file->text, file->size + 1);
+  if (!u->depth) {
+    u->subsurface = strstr(file->text, "subsurface\"") != NULL;
+    u->is_old = vl_old_scene_text(file->words, file->size).version != 0;
+    memcpy(file->words, file->text, file->size + 1);
   }
-  *changed = file.edits.count > 0;
-  if (fine && !(*text = vl_old_render(&file, (vlOldSpan){0, file.size})))
-    fine = vl_old_fail_memory(u);
-  for (size_t i = 0; i < file.edits.count; i++)
-    vl_free(u->context, file.edits.items[i].text);
-  VL_FREE(u->context, file.edits.items, file.blocks.items, file.words, data);
-  if (u->film_file == &file)
+  if (!read_all(file))
+    return false;
+  *text = vl_old_render(file, (vlOldSpan){0, file->size});
+  return *text || vl_old_fail_memory(u);
+}
+
+void vl_old_free_file(vlOldFile *file) {
+  vlUpgrade *u = file->u;
+  for (size_t i = 0; i < file->edits.count; i++)
+    vl_free(u->context, file->edits.items[i].text);
+  VL_FREE(u->context, file->edits.items, file->blocks.items, file->words, file->text);
+  if (u->film_file == file)
     u->film_file = NULL;
-  return fine;
 }
 
 static void tell_written(const vlUpgrade *u, const char *path, const char *what) {
@@ -191,11 +193,32 @@ static void release(vlUpgrade *u) {
           u->maps.items);
 }
 
+/* Offset of a line and column, from 1 on. */
+static size_t offset_of(const char *text, uint32_t line, uint32_t column) {
+  const char *at = text;
+  for (const char *end; line > 1 && (end = strchr(at, '\n')); line--)
+    at = end + 1;
+  return (size_t)(at - text) + (column ? column - 1 : 0);
+}
+
+/* What is wrong in the new scene, told at the statement of the old one that it is made of. */
+static bool fail_check(vlUpgrade *u, const vlOldFile *file, const char *text,
+                       const vlError *found) {
+  const bool first = vl_text_is(found->file, u->to) && found->line > 0;
+  const uint32_t line =
+      first ? vl_old_line(file, offset_of(text, found->line, found->column)) : found->line;
+  u->result = vl_fail_at(&u->error, VL_ERROR_SCENE, first ? u->first : found->file, line,
+                         first ? 0 : found->column,
+                         "%s; the upgraded scene is wrong here, and nothing is written",
+                         found->message);
+  return false;
+}
+
 /* Reads the new scene before it is written: what velo refuses is an error of the upgrade. A
  * file without WorldBegin is part of a scene and is not checked. What velo does not render is
  * no mistake of the upgrade (permissive), nor is a file that the old scene lacks, too. The
  * images that are made of the old ones are not there yet: permissive again. */
-static bool check(vlUpgrade *u, const char *text) {
+static bool check(vlUpgrade *u, const vlOldFile *file, const char *text) {
   if (!u->has_world)
     return true;
   vlContext *context = NULL;
@@ -218,25 +241,24 @@ static bool check(vlUpgrade *u, const char *text) {
     return true;
   if (r == VL_ERROR_MEMORY)
     return vl_old_fail_memory(u);
+  return fail_check(u, file, text, &error);
+}
+
+static bool check_strict(vlUpgrade *u) {
+  if (!u->def->strict || !u->lost)
+    return true;
   u->result =
-      vl_fail_at(&u->error, VL_ERROR_SCENE, error.file, error.line, error.column,
-                 "%s; the upgraded scene is wrong here, and nothing is written", error.message);
+      vl_fail_at(&u->error, VL_ERROR_UNSUPPORTED, u->first, 0, 0,
+                 "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
   return false;
 }
 
 static bool run(vlUpgrade *u) {
-  char *text = NULL;
-  bool changed;
-  if (!vl_old_upgrade_file(u, u->first, &text, &changed))
-    return false;
-  if (u->def->strict && u->lost) {
-    vl_free(u->context, text);
-    u->result =
-        vl_fail_at(&u->error, VL_ERROR_UNSUPPORTED, u->first, 0, 0,
-                   "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
-    return false;
-  }
-  bool fine = check(u, text) && write_files(u, text);
+  vlOldFile file = {.u = u, .path = u->first};
+  char *text;
+  const bool fine = vl_old_upgrade_file(&file, &text) && check_strict(u) &&
+                    check(u, &file, text) && write_files(u, text);
+  vl_old_free_file(&file);
   vl_free(u->context, text);
   return fine;
 }

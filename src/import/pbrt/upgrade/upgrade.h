@@ -130,7 +130,8 @@ typedef struct vlOldBlock {
 
 typedef struct vlOldFile {
   vlUpgrade *u;
-  const char *path, *text;
+  const char *path;
+  char *text;
   size_t size;
   char *words; /* a copy of the text that the tokenizer changes */
   VL_ARRAY(vlOldEdit) edits;
@@ -191,6 +192,8 @@ bool vl_old_rename(vlOldStatement *s, size_t i, const char *name);
 bool vl_old_finish(vlOldStatement *s);
 /* The new text of a span; the caller frees it. Null: out of memory. */
 char *vl_old_render(vlOldFile *file, vlOldSpan span);
+/* The line of the old text that the offset in the new text of the whole file comes from. */
+uint32_t vl_old_line(const vlOldFile *file, size_t offset);
 
 /* ---- parameters (params.c) --------------------------------------------------------------- */
 
@@ -222,6 +225,10 @@ const char *vl_old_text(double value, char text[32]);
 const char *vl_old_rgb_text(const double rgb[3], char text[VL_OLD_VALUE]);
 /* Sets the new value. */
 void vl_old_value(vlOldParam *p, const char *format, ...) VL_PRINTF(2, 3);
+/* Makes the parameter a colour. */
+void vl_old_set_color(vlOldParam *p, const double rgb[3]);
+/* Lowers what is above 1 to 1, and reports that. Returns whether there was any. */
+bool vl_old_clip(const vlOldStatement *s, const char *name, double rgb[3]);
 /* Of several numbers the first is kept, as it is written. */
 void vl_old_keep_first(const vlOldStatement *s, vlOldParam *p);
 
@@ -292,8 +299,11 @@ bool vl_old_put_name(vlOldStatement *s, const vlOldParam *p, const char *name,
                      const char *note);
 /* Includes: upgrades the file and names the new one. */
 vlOldRule vl_old_include;
-/* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
-bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
+/* Upgrades the file, of which u and path are set; what it holds is freed by vl_old_free_file,
+ * also after an error. Its text differs if there are edits. *text is the new one, freed by the
+ * caller. */
+bool vl_old_upgrade_file(vlOldFile *file, char **text);
+void vl_old_free_file(vlOldFile *file);
 /* The name of the equal-area image that an image over longitude and latitude becomes, times the
  * factor. The image is made, and written at the end. */
 bool vl_old_environment(const vlOldStatement *s, const char *name, const double factor[3],

@@ -2,6 +2,7 @@
  * the functions. Material 0 of the world is the default material, a diffuse grey. */
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -11,10 +12,25 @@
 #include "velo/schema.h"
 #include "velo/texture.h"
 
+typedef struct Label {
+  char text[200];
+} Label;
+
+/* `material "gold"`, or the kind of one without a name. */
+static Label label_of(const vlMaterialDef *def) {
+  Label label;
+  if (def->name && def->name[0])
+    snprintf(label.text, sizeof label.text, "material \"%s\"", vl_short_text(def->name).text);
+  else
+    snprintf(label.text, sizeof label.text, "%s",
+             vl_kind_row(&vl_material_family, (int)def->kind)->name);
+  return label;
+}
+
 static vlResult material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;
-  return vl_fail_source(b->error, VL_ERROR_SCENE, def->source, "material \"%s\": %s",
-                        vl_short_text(def->name).text, what);
+  return vl_fail_source(b->error, VL_ERROR_SCENE, def->source, "%s: %s", label_of(def).text,
+                        what);
 }
 
 vlResult vl_material_floats(const vlMaterialBuild *b, const vlMaterialFloat *floats,
@@ -215,10 +231,9 @@ static vlResult compile_index(const vlMaterialBuild *b, const vlSpectrumInput *e
   if (!(m->eta_s > 0))
     return material_fail(b, "the index of refraction must be positive");
   if (spectral)
-    vl_log(b->world->context, VL_LOG_WARNING, NULL,
-           "material \"%s\": dispersion of this kind is not supported, the index at 589.3 nm "
-           "is used",
-           vl_short_text(b->def->name).text);
+    vl_world_warn(b->world, b->def->source,
+                  "%s: dispersion of this kind is not supported, the index at 589.3 nm is used",
+                  label_of(b->def).text);
   return VL_OK;
 }
 

@@ -37,4 +37,13 @@ expect_text no_rgb_given_says 'color rgb: there is no spectrum then'
 expect_code 2 bad_number "$VELO" render plain.pbrt -o no.exr --spectrum 5:300:700
 expect_code 2 bad_words "$VELO" render plain.pbrt -o no.exr --spectrum many
 check nothing_written test ! -e no.exr
+
+# What varies with the wavelength and cannot here.
+for material in 'Material "coateddiffuse"' 'MakeNamedMaterial "pot" "string type" "coateddiffuse"'; do
+  { cat plain.pbrt; printf '%s "spectrum eta" "glass-BK7"\n' "$material"; } >coat.pbrt
+  printf 'Shape "disk"\n' >>coat.pbrt
+  check coat "$VELO" render coat.pbrt -o coat.exr --spp 1 --quiet
+  expect_text coat_says "warning: coat.pbrt:$(grep -n glass-BK7 coat.pbrt | cut -d: -f1):1: "
+done
+expect_text coat_name 'material "pot": dispersion of this kind is not supported'
 finish

@@ -27,6 +27,7 @@ const MediumCase grid_medium = {
     "\"rgb sigma_a\" [.5 .5 .5] \"rgb sigma_s\" [0 0 0] \"float density\" [" FOUR_THIN FOUR_THIN
     "3 3 3 3 " FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN FOUR_THIN "]",
     .passes = 0.631678,
+    .density_of_layers = layered_density,
     .density = faded_density,
     /* (temperature - 300) 1.4 */
     .hot = {BLOCKS "\"float density\" " EIGHT

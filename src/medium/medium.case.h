@@ -20,7 +20,8 @@ typedef struct MediumCase {
   const char *emits_by_cell; /* as emits, but by a scale of each cell; null: has none */
   double emission_by_cell;   /* of that */
   const char *layers; /* absorbs alone, most of it in one of eight layers; null: cannot */
-  double passes;      /* the transmittance of that */
+  double passes;      /* the transmittance of that along z */
+  double (*density_of_layers)(const double p[3], PlainNoise *noise); /* its extinction */
   double (*density)(const double p[3], PlainNoise *noise); /* the extinction of `absorbs` at a
                                            point of the box; null: not known */
   const char *tall; /* all parameters of one that is not like the others, such as one higher
@@ -67,10 +68,29 @@ typedef struct MediumCase {
     .value = "\"integer nz\" 4 \"integer nx\" 2"          \
   }
 
-/* The extinction of grids of two cells along z with 1 in all: it fades at the box's sides. */
+/* The extinction of grids of two cells along each axis, .5 in all: it fades at the box's
+ * sides. */
 static inline double faded_density(const double p[3], PlainNoise *noise) {
+  double density = 0.5;
   (void)noise;
-  return 0.5 * fmin(1, 1.5 - fabs(p[2]));
+  for (int k = 0; k < 3; k++)
+    density *= fmin(1, 1.5 - fabs(p[k]));
+  return density;
+}
+
+/* The extinction of LAYERS: two cells along x and y; along z eight, the third of 1.5, the
+ * others of .05. */
+static inline double layered_density(const double p[3], PlainNoise *noise) {
+  const double at = 4 * (p[2] + 1) - 0.5;
+  const double first = floor(at);
+  double density = 0;
+  (void)noise;
+  for (int side = 0; side < 2; side++) {
+    const double layer = first + side;
+    const double value = layer < 0 || layer > 7 ? 0 : layer == 2 ? 1.5 : 0.05;
+    density += value * (side ? at - first : 1 - (at - first));
+  }
+  return density * fmin(1, 1.5 - fabs(p[0])) * fmin(1, 1.5 - fabs(p[1]));
 }
 
 /* Declares the case of each kind, which is in the file of the kind: medium/NAME.case.c. */

@@ -19,6 +19,7 @@ const MediumCase rgb_grid_medium = {
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
     "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]",
     .passes = 0.631678,
+    .density_of_layers = layered_density,
     .density = faded_density,
     /* what is not given is 1 */
     .tall = BLOCKS "\"rgb sigma_s\" " EIGHT_COLORS,

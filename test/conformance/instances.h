@@ -12,18 +12,29 @@
 /* A stretched map that does not mirror, and one that does. */
 static const char *const placing_maps[2] = {STRETCHED, STRETCHED "Scale 1 -1 1 "};
 
+/* Another object, far away, before it and after it. */
+#define DECOY(name, map)                                                 \
+  "ObjectBegin \"" name                                                  \
+  "\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" "  \
+  "[0 0 0 1 0 0 0 1 0] ObjectEnd AttributeBegin Translate 50 60 70 " map \
+  " ObjectInstance \"" name "\" AttributeEnd "
+#define BEFORE DECOY("before", "Rotate 40 1 2 3 Scale 2 1 -3")
+#define AFTER DECOY("after", "Rotate 70 3 1 2 Scale 1 5 1")
+
 /* The shape under a map, in an object, and in one that hardly moves, but is not at rest. */
 static const char *const placings[3] = {
     "AttributeBegin %s Shape %%s AttributeEnd",
-    "ObjectBegin \"o\" Shape %%s ObjectEnd AttributeBegin %s ObjectInstance \"o\" AttributeEnd",
+    BEFORE
+    "ObjectBegin \"o\" Shape %%s ObjectEnd AttributeBegin %s ObjectInstance \"o\" AttributeEnd " AFTER,
+    BEFORE
     "ObjectBegin \"o\" Shape %%s ObjectEnd AttributeBegin %s ActiveTransform EndTime "
-    "Translate 0 0 1e-7 ActiveTransform All ObjectInstance \"o\" AttributeEnd",
+    "Translate 0 0 1e-7 ActiveTransform All ObjectInstance \"o\" AttributeEnd " AFTER,
 };
 
 static Sides *placed(const char *placing, const char *map, const char *directive,
                      const char *parameters) {
-  char scene[600];
-  char form[1000];
+  char scene[1400];
+  char form[1800];
   snprintf(scene, sizeof scene,
            HEAD "WorldBegin LightSource \"infinite\" Material \"diffuse\" %s", placing);
   snprintf(form, sizeof form, scene, map);

@@ -32,6 +32,10 @@ typedef struct MaterialLaws {
   /* the mean weight of all samples; the share of it that stays on the eye's side */
   Mean all[3], stays;
   Mean density, has_density;
+  /* of specular samples, 1 over the probability of their choice; which there were: back to the
+   * eye's side, and across */
+  Mean choices;
+  bool chosen[2];
   Mean along; /* the samples' directions along x beyond what is known, by their weight */
   uint32_t compared, wrong_density, wrong_weight, both_ways, unequal;
 } MaterialLaws;
@@ -76,6 +80,9 @@ static void ask_samples(MaterialLaws *m, vlTrace *trace, bool above) {
     }
     bool stays = ((double)m->next->rays.direction[2][i] > 0) == above;
     mean_add(&m->stays, stays ? sum / 3 : 0);
+    const bool specular = m->next->specular[i] && m->next->pdf[i] > 0;
+    mean_add(&m->choices, specular ? 1 / (double)m->next->pdf[i] : 0);
+    m->chosen[stays] = m->chosen[stays] || specular;
     mean_add(&m->has_density, dense);
     mean_add(&m->along, sum / 3 * ((double)m->next->rays.direction[0][i] - m->variant->along));
     if (!dense)
@@ -188,6 +195,11 @@ static void judge_material(const MaterialLaws *m) {
     if (v->albedo[c] > 0 && a == material_angles[0])
       check_mean("materials", m->kind, what, &m->all[c], v->albedo[c], sharp);
   }
+  snprintf(what, sizeof what, "%s, %.1f: the number of directions, by their probabilities", p,
+           a);
+  if (!v->walks)
+    check_mean("materials", m->kind, what, &m->choices, m->chosen[0] + m->chosen[1],
+               (Sight){.slack = 5e-3, .min = 0.25});
   double all = (mean_of(&m->all[0]) + mean_of(&m->all[1]) + mean_of(&m->all[2])) / 3;
   snprintf(what, sizeof what, "%s, %.1f: light that is reflected", p, a);
   if (v->reflected > 0 && a == material_angles[0])

@@ -22,14 +22,17 @@
 #include "hostile.h"
 #include "instances.h"
 #include "lamps.h"
+#include "lanes.h"
 #include "layers.h"
 #include "light_power.h"
 #include "lights.h"
+#include "lit_materials.h"
 #include "materials.h"
 #include "mirror_depths.h"
 #include "mirrored_textures.h"
 #include "moving.h"
 #include "neighbours.h"
+#include "oblique.h"
 #include "parameters.h"
 #include "pbrt_defaults.h"
 #include "phases.h"
@@ -94,6 +97,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(rough_stand_ins),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(turned_materials),
+      cmocka_unit_test(lit_materials),
       cmocka_unit_test(laws_of_shading),
       cmocka_unit_test(channels_of_materials),
       cmocka_unit_test(laws_of_descriptions),
@@ -142,9 +146,12 @@ int main(int argc, char **argv) {
       cmocka_unit_test(filters_of_light_paths),
       cmocka_unit_test(coverages_of_filters),
       cmocka_unit_test(laws_of_media),
+      cmocka_unit_test(oblique_ways),
       cmocka_unit_test(neighbouring_media),
       cmocka_unit_test(neighbouring_materials),
       cmocka_unit_test(neighbouring_textures),
+      cmocka_unit_test(lanes_of_materials),
+      cmocka_unit_test(lanes_of_textures),
       cmocka_unit_test(laws_of_densities),
       cmocka_unit_test(laws_of_phases),
       cmocka_unit_test(laws_of_tracers),

@@ -1,6 +1,7 @@
 /* conformance/far_lamps.h: laws of many lamps. Whatever chooses lights, a floor has the light
  * of the sky alone, however many lamps shine elsewhere; and it has the light of the end of
- * a row of spots, though the middle of the row does not shine there. */
+ * a row of spots, though the middle of the row does not shine there. However far away a lamp
+ * is, its own surface does not stop the rays to it. */
 #ifndef TEST_CONFORMANCE_FAR_LAMPS_H
 #define TEST_CONFORMANCE_FAR_LAMPS_H
 
@@ -110,6 +111,75 @@ static void lamps_elsewhere(void **state) {
         check_same_mean("lights", samplers[s], what, &mean, &alone, sight);
       }
   }
+  expect_no_failures();
+}
+
+/* ---- rays to lamps far away -------------------------------------------------------------- */
+
+/* Lamps of each kind of shape, at the origin. */
+static const char *const far_shapes[] = {
+    "\"bool twosided\" true Shape \"sphere\" \"float radius\" 1",
+    "Shape \"cylinder\" \"float radius\" 1",
+    "\"bool twosided\" true Shape \"disk\" \"float radius\" 1",
+    "\"bool twosided\" true Shape \"bilinearmesh\" \"point3 P\" [-1 -1 .2 1 -1 0 -1 1 0 1 1 .2]",
+    "\"bool twosided\" true Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [-1 -1 0 1 -1 .3 0 1 0]",
+};
+
+typedef struct FarWays {
+  double distance;
+  vlTraceRays *rays;
+  vlTraceHits *hits;
+  vlTraceLights *lights;
+  uint32_t sampled, stopped;
+} FarWays;
+
+/* Points of the floor, which is `distance` below the lamp. */
+static void ask_ways(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)paths;
+  static const double down[3] = {0, 0, -1};
+  static uint8_t occluded[VL_OWN_BATCH];
+  FarWays *f = probe->user;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const double origin[3] = {f->distance * (fmod(i * 0.7548776662, 1.0) - 0.5),
+                              f->distance * (fmod(i * 0.5698402910, 1.0) - 0.5),
+                              -0.9 * f->distance};
+    set_ray(f->rays, i, origin, down);
+  }
+  vl_world_trace(trace, f->rays, f->hits);
+  vl_trace_lights(trace, 0, f->lights);
+  vl_world_occluded(trace, &f->lights->rays, occluded);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    const bool sampled = f->lights->pdf[i] > 0 && f->lights->radiance[1][i] > 0;
+    f->sampled += sampled;
+    f->stopped += sampled && occluded[i];
+  }
+}
+
+static void rays_to_lamps(void **state) {
+  (void)state;
+  FarWays f = {.rays = new_rays(),
+               .hits = calloc(1, sizeof *f.hits),
+               .lights = calloc(1, sizeof *f.lights)};
+  for (size_t k = 0; k < sizeof far_shapes / sizeof *far_shapes; k++)
+    for (f.distance = 3; f.distance < 1e7; f.distance *= 20) {
+      char text[TEXT];
+      Probe probe = {.ask = ask_ways, .user = &f};
+      const double d = f.distance;
+      snprintf(text, sizeof text,
+               HEAD
+               "WorldBegin Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" "
+               "[%g %g %g %g %g %g %g %g %g %g %g %g] AreaLightSource \"diffuse\" "
+               "%s\n",
+               -d, -d, -d, d, -d, -d, -d, d, -d, d, d, -d, far_shapes[k]);
+      f.sampled = f.stopped = 0;
+      probe_world(text, &probe, 2);
+      if (f.sampled < VL_OWN_BATCH / 4 || f.stopped)
+        broken("lights", "diffuse", "%s, %g away: the lamp stops %u of %u rays to it",
+               far_shapes[k], d, f.stopped, f.sampled);
+    }
+  free(f.rays);
+  free(f.hits);
+  free(f.lights);
   expect_no_failures();
 }
 

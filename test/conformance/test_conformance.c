@@ -3,6 +3,7 @@
 #include "bumps.h"
 #include "cameras.h"
 #include "channels.h"
+#include "coarse_meshes.h"
 #include "conformance.h"
 #include "coverages.h"
 #include "densities.h"
@@ -109,6 +110,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(chosen_powers),
       cmocka_unit_test(lamps_elsewhere),
       cmocka_unit_test(lamps_in_a_row),
+      cmocka_unit_test(rays_to_lamps),
       cmocka_unit_test(sums_of_lamps),
       cmocka_unit_test(illuminances),
       cmocka_unit_test(light_paths),
@@ -163,6 +165,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(widths_after_bounces),
       cmocka_unit_test(laws_of_furnaces),
       cmocka_unit_test(tracers_in_fog),
+      cmocka_unit_test(tracers_on_coarse_meshes),
       cmocka_unit_test(spectra_of_files),
       cmocka_unit_test(lights_of_files),
       cmocka_unit_test(skies_of_files),

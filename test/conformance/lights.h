@@ -226,8 +226,32 @@ static void check_light_samples(const vlKindRow *row, const LightVariant *v, con
     check_hit_light("lights", row->name, v->parameters, text, v->compensated);
 }
 
+/* What goes from a point to a point needs two of them. */
+static void check_aims(const vlKindRow *row) {
+  char text[TEXT];
+  vlError error = {0};
+  bool from = false;
+  bool to = false;
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    from = from || strcmp(row->parameters[i].name, "from") == 0;
+    to = to || strcmp(row->parameters[i].name, "to") == 0;
+  }
+  if (!from || !to)
+    return;
+  snprintf(text, sizeof text,
+           HEAD "WorldBegin LightSource \"%s\" \"point3 from\" [1 2 3] \"point3 to\" [1 2 3]",
+           row->name);
+  vlScene *scene = load_text(context, text, &error);
+  if (scene)
+    broken("lights", row->name, "may go from a point to the same point");
+  vl_scene_destroy(scene);
+}
+
 static void laws_of_lights(void **state) {
   (void)state;
+  const vlKindFamily *family = vl_kind_family_find("lights");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    check_aims(family->rows[k]);
   for_each_light(FLOOR, check_light_samples);
   check_spot_as_gltf();
   expect_no_failures();

@@ -227,9 +227,13 @@ static void sums_of_shared_samples(void **state) {
   check_sums(true);
 }
 
-/* A floor of reflectance 1/2 seen from straight above in RGB, with a lamp: a sphere of radius
- * 1/4 at height 2. */
-static Stage floor_stage(bool point) {
+/* The lamp at height 2, or the direction of a sun. */
+typedef enum Lamp { LAMP_BALL, LAMP_POINT, LAMP_SUN } Lamp;
+static const double sun[3] = {0.6, 0, 0.8};
+
+/* A floor of reflectance 1/2 seen from straight above in RGB, with a lamp; the ball has the
+ * radius 1/4. */
+static Stage floor_stage(Lamp lamp) {
   Stage s = stage_open(SIDE, SIDE);
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
   s.camera.eye[2] = 0.01;
@@ -237,10 +241,15 @@ static Stage floor_stage(bool point) {
   Quad q = quad_at(0, 0, 0, 40, 0, 0, 0, 40, 0);
   q.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f);
   add_quad(&s, &q);
-  if (point) {
-    vlLightDef light = vl_default_light_def(VL_LIGHT_POINT);
+  if (lamp != LAMP_BALL) {
+    vlLightDef light =
+        vl_default_light_def(lamp == LAMP_SUN ? VL_LIGHT_DISTANT : VL_LIGHT_POINT);
     light.from[2] = 2;
     light.scale = 3;
+    for (int k = 0; lamp == LAMP_SUN && k < 3; k++) {
+      light.from[k] = sun[k];
+      light.to[k] = 0;
+    }
     vl_scene_add_light(s.scene, &light);
   } else {
     vlEmissionDef emission = vl_default_emission_def();
@@ -263,7 +272,7 @@ static void near(const char *what, double a, double b) {
 
 /* One vertex on the floor, with what light sampling found there. Densities are those of the
  * formulas. */
-static void check_floor(const vlPath *p, bool point, int *sampled, int *hit) {
+static void check_floor(const vlPath *p, Lamp lamp, int *sampled, int *hit) {
   const vlPathVertex *v = &p->vertices[0];
   double at[3] = {v->position[0], v->position[1], v->position[2]},
          d2 = at[0] * at[0] + at[1] * at[1] + 4;
@@ -290,9 +299,15 @@ static void check_floor(const vlPath *p, bool point, int *sampled, int *hit) {
       continue; /* the back of the lamp */
     double w[3] = {c->target[0] - at[0], c->target[1] - at[1], c->target[2] - at[2]};
     double l2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], cosine = w[2] / sqrt(l2);
-    assert_string_equal(c->type, point ? "point" : "area");
+    static const char *const types[] = {"area", "point", "distant"};
+    assert_string_equal(c->type, types[lamp]);
     assert_false(c->occluded);
-    if (point) {
+    assert_int_equal(c->distant, lamp == LAMP_SUN);
+    if (lamp == LAMP_SUN) {
+      for (int k = 0; k < 3; k++)
+        assert_near("sun: direction", c->target[k], sun[k], 1e-6);
+      near("sun: radiance", c->radiance[1], 0.5 / M_PI * sun[2] * 3);
+    } else if (lamp == LAMP_POINT) {
       near("point: pdf", c->light_pdf, 1);
       near("point: weight", c->weight, 1);
       near("point: radiance", c->radiance[1], 0.5 / M_PI * cosine * 3 / l2);
@@ -310,8 +325,8 @@ static void check_floor(const vlPath *p, bool point, int *sampled, int *hit) {
 
 static void densities(void **state) {
   (void)state;
-  for (int point = 0; point < 2; point++) {
-    Stage s = floor_stage(point);
+  for (Lamp lamp = LAMP_BALL; lamp <= LAMP_SUN; lamp++) {
+    Stage s = floor_stage(lamp);
     vlWorld *world = NULL;
     vlCamera camera;
     vlError error;
@@ -323,11 +338,11 @@ static void densities(void **state) {
       s.render.share_samples = false;
       vlPixelPaths *paths = trace(world, &camera, &s.film, &s.render, x, 5, 256);
       for (uint32_t i = 0; i < paths->count; i++)
-        check_floor(&paths->paths[i], point, &sampled, &hit);
+        check_floor(&paths->paths[i], lamp, &sampled, &hit);
       vl_pixel_paths_destroy(paths);
     }
     assert_int_equal(sampled, 4 * 256);
-    if (!point)
+    if (lamp == LAMP_BALL)
       assert_true(hit > 4);
     vl_world_destroy(world);
     stage_close(&s);
@@ -338,7 +353,7 @@ static void densities(void **state) {
 static void names_of_images(void **state) {
   (void)state;
   for (int tinted = 0; tinted < 2; tinted++) {
-    Stage s = floor_stage(true);
+    Stage s = floor_stage(LAMP_POINT);
     const vlMaterialId floor = {1};
     vlMaterialDef material = *vl_scene_material(s.scene, floor);
     vlTextureDef leaf = vl_default_texture_def(VL_TEXTURE_IMAGE, true);

@@ -32,6 +32,7 @@
 #include "mirror_depths.h"
 #include "mirrored_textures.h"
 #include "moving.h"
+#include "nearly_even.h"
 #include "neighbours.h"
 #include "oblique.h"
 #include "parameters.h"
@@ -164,6 +165,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test(textures_in_mirrors),
       cmocka_unit_test(widths_after_bounces),
       cmocka_unit_test(laws_of_furnaces),
+      cmocka_unit_test(nearly_even_indices),
       cmocka_unit_test(tracers_in_fog),
       cmocka_unit_test(tracers_on_coarse_meshes),
       cmocka_unit_test(spectra_of_files),

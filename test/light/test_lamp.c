@@ -302,6 +302,8 @@ static void known(void **state) {
     assert_close("cosine beam", info.beam[k] * 180 / PI, 120, 1e-3);
     assert_close("cosine field", info.field[k] * 180 / PI, 2 * acos(0.1) * 180 / PI, 1e-3);
   }
+  info = info_of("TILT=NONE\n1 1000 1 2 1 1 1 0 0 0\n1 1 0\n0 90\n0\n100 7\n");
+  assert_close("straight beam", info.beam[0] * 180 / PI, 2 * 50 * 90 / 93.0, 1e-6);
   info = info_of(
       "TILT=NONE\n1 1000 1 4 2 1 1 0 0 0\n1 1 0\n0 30 60 90\n0 180\n"
       "5 5 5 5\n5 5 5 50\n");

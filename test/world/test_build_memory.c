@@ -9,13 +9,21 @@
 #include "velo/texture.h"
 
 typedef struct Purse {
-  long left; /* allocations that still succeed; negative: all */
+  long left;    /* allocations that still succeed; negative: all */
+  bool refused; /* one has failed since `left` was set by limit */
 } Purse;
+
+static void limit(Purse *p, long left) {
+  p->left = left;
+  p->refused = false;
+}
 
 static void *purse_allocate(void *user, size_t size) {
   Purse *p = user;
-  if (p->left == 0)
+  if (p->left == 0) {
+    p->refused = true;
     return NULL;
+  }
   if (p->left > 0)
     p->left--;
   return malloc(size);
@@ -122,45 +130,68 @@ static Stage purse_stage(Purse *purse) {
   return s;
 }
 
+/* Builds with each `step`th allocation failing, from the first on, until a build has enough. */
+static void build_at_each(Stage *s, Purse *purse, long step, long least) {
+  const size_t before = vl_context_memory(s->context, NULL);
+  long n = 0;
+  for (;; n += step) {
+    vlWorld *world = NULL;
+    vlError error;
+    limit(purse, n);
+    vlResult r = vl_world_build(s->scene, &s->build, &world, &error);
+    purse->left = -1;
+    if (r == VL_OK) {
+      if (purse->refused)
+        fail_msg("allocation %ld failed, and the build succeeds", n);
+      vl_world_destroy(world);
+      break;
+    }
+    if (r != VL_ERROR_MEMORY || error.code != VL_ERROR_MEMORY)
+      fail_msg("allocation %ld failed: result %d, \"%s\"", n, (int)r, error.message);
+    assert_null(world);
+    size_t held = vl_context_memory(s->context, NULL);
+    if (held != before)
+      fail_msg("allocation %ld failed: %g bytes left", n, (double)held - (double)before);
+    assert_true(n < 5000);
+  }
+  assert_true(n > least);
+  assert_int_equal(vl_context_memory(s->context, NULL), before);
+}
+
 static void build_without_memory(void **state) {
   (void)state;
   char path[600];
   snprintf(path, sizeof path, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
-  Purse purse = {-1};
+  Purse purse = {-1, false};
   Stage s = purse_stage(&purse);
   fill(&s, path);
-  size_t before = vl_context_memory(s.context, NULL);
   for (int color = 0; color < 2; color++)
     for (int sampler = 0; sampler < 2; sampler++) {
       s.build.color = (vlColorMode)color;
       s.build.light_sampler = (vlLightSampler)sampler;
       /* Embree's memory is its own */
       s.build.accelerator = sampler ? VL_ACCELERATOR_AUTO : VL_ACCELERATOR_BVH;
-      long n = 0, step = color || sampler
-                             ? 7
-                             : 1; /* the first build at each allocation, the others at some */
-      for (;; n += step) {
-        vlWorld *world = NULL;
-        vlError error;
-        purse.left = n;
-        vlResult r = vl_world_build(s.scene, &s.build, &world, &error);
-        purse.left = -1;
-        if (r == VL_OK) {
-          vl_world_destroy(world);
-          break;
-        }
-        if (r != VL_ERROR_MEMORY || error.code != VL_ERROR_MEMORY)
-          fail_msg("allocation %ld failed: result %d, \"%s\"", n, (int)r, error.message);
-        assert_null(world);
-        size_t held = vl_context_memory(s.context, NULL);
-        if (held != before)
-          fail_msg("allocation %ld failed: %g bytes left", n, (double)held - (double)before);
-        assert_true(n < 5000);
-      }
-      assert_true(n > 30);
-      size_t held = vl_context_memory(s.context, NULL);
-      assert_int_equal(held, before);
+      /* the first build at each allocation, the others at some */
+      build_at_each(&s, &purse, color || sampler ? 7 : 1, 30);
     }
+  remove(path);
+  stage_close(&s);
+}
+
+/* What a world shares with the one before it is allocated for, too. */
+static void build_again_without_memory(void **state) {
+  (void)state;
+  char path[600];
+  snprintf(path, sizeof path, "%s/test_build_again.pfm", VELO_BINARY_DIR);
+  Purse purse = {-1, false};
+  Stage s = purse_stage(&purse);
+  fill(&s, path);
+  s.build.accelerator = VL_ACCELERATOR_BVH;
+  vlWorld *previous = NULL;
+  assert_int_equal(vl_world_build(s.scene, &s.build, &previous, NULL), VL_OK);
+  s.build.previous = previous;
+  build_at_each(&s, &purse, 1, 30);
+  vl_world_destroy(previous);
   remove(path);
   stage_close(&s);
 }
@@ -169,7 +200,7 @@ static void render_without_memory(void **state) {
   (void)state;
   char path[600];
   snprintf(path, sizeof path, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
-  Purse purse = {-1};
+  Purse purse = {-1, false};
   Stage s = purse_stage(&purse);
   fill(&s, path);
   remove(path);
@@ -192,7 +223,7 @@ static void render_without_memory(void **state) {
     vlFilm *film = NULL;
     vlImage *image = NULL;
     vlError error;
-    purse.left = n;
+    limit(&purse, n);
     vlResult r = vl_film_create(s.context, &s.film, &film);
     if (r == VL_OK)
       r = vl_render(world, &camera, film, &s.render, NULL, &error);
@@ -203,6 +234,8 @@ static void render_without_memory(void **state) {
     vl_film_destroy(film);
     size_t held = vl_context_memory(s.context, NULL);
     assert_int_equal(held, before);
+    if (r == VL_OK && purse.refused)
+      fail_msg("allocation %ld failed, and the render succeeds", n);
     if (r == VL_OK)
       break;
     assert_int_equal(r, VL_ERROR_MEMORY);
@@ -215,6 +248,7 @@ static void render_without_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(build_without_memory),
+                                     cmocka_unit_test(build_again_without_memory),
                                      cmocka_unit_test(render_without_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -135,7 +135,7 @@ void vl_record_sampled(const vlWorld *world, const vlLightSamples *l, uint32_t i
                        vlPathContribution *to) {
   name_light(world, l->light[i], to);
   to->distant = l->distant[i];
-  vl_store3(to->target, to->distant ? vl_row3(&l->w, i) : vl_row3(&l->target, i));
+  vl_store3(to->target, vl_row3(&l->target, i));
 }
 
 void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at,

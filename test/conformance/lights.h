@@ -233,8 +233,9 @@ static void check_aims(const vlKindRow *row) {
   bool from = false;
   bool to = false;
   for (uint32_t i = 0; i < row->parameter_count; i++) {
-    from = from || strcmp(row->parameters[i].name, "from") == 0;
-    to = to || strcmp(row->parameters[i].name, "to") == 0;
+    const char *name = row->parameters[i].name;
+    from = from || (name && strcmp(name, "from") == 0);
+    to = to || (name && strcmp(name, "to") == 0);
   }
   if (!from || !to)
     return;

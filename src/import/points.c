@@ -61,9 +61,9 @@ static void disc(const float *n, float radius, float corners[CORNERS][3]) {
          w[3];
   for (int i = 0; i < 3; i++)
     w[i] = l > 0 ? n[i] / l : i == 2;
-  int min = vl_least_axis3(w);
+  int axis = vl_least_axis3(w);
   for (int i = 0; i < 3; i++)
-    u[i] = (i == min) - w[min] * w[i];
+    u[i] = (i == axis) - w[axis] * w[i];
   vl_normalize3(u);
   vl_cross3(w, u, v);
   for (int k = 0; k < CORNERS; k++)

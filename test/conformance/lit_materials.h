@@ -50,10 +50,7 @@ static void ask_lit(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   static double sum[VL_OWN_BATCH];
   LitLaws *m = probe->user;
   double eye[3];
-  eye_direction(m->angle, eye);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
-    rays_towards(m->rays, i, eye);
-  vl_world_trace(trace, m->rays, m->hits);
+  look_at_square(trace, m->angle, eye, m->rays, m->hits);
   vl_trace_lights(trace, 0, m->sampled);
   vl_trace_bsdf(trace, m->sampled->direction, value, NULL);
   memset(sum, 0, sizeof sum);

@@ -58,6 +58,15 @@ static void rays_towards(vlTraceRays *rays, uint32_t i, const double w[3]) {
   set_ray(rays, i, origin, direction);
 }
 
+/* Finds the points of the square that are seen from an angle to its normal: from *eye. */
+static void look_at_square(vlTrace *trace, double angle, double eye[3], vlTraceRays *rays,
+                           vlTraceHits *hits) {
+  eye_direction(angle, eye);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
+    rays_towards(rays, i, eye);
+  vl_world_trace(trace, rays, hits);
+}
+
 static bool close_to(double a, double b, double relative) {
   return fabs(a - b) <= relative * fmax(fabs(a), fabs(b)) + 1e-5;
 }
@@ -154,10 +163,7 @@ static void ask_material(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) 
   (void)paths;
   MaterialLaws *m = probe->user;
   double eye[3];
-  eye_direction(m->angle, eye);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
-    rays_towards(m->rays, i, eye);
-  vl_world_trace(trace, m->rays, m->hits);
+  look_at_square(trace, m->angle, eye, m->rays, m->hits);
   assert_true(isfinite(m->hits->t[0]));
   ask_samples(m, trace, eye[2] > 0);
   ask_integrals(m, trace, probe->batch);
@@ -244,10 +250,7 @@ static void ask_absent(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   (void)paths;
   MaterialLaws *m = probe->user;
   double eye[3];
-  eye_direction(material_angles[0], eye);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
-    rays_towards(m->rays, i, eye);
-  vl_world_trace(trace, m->rays, m->hits);
+  look_at_square(trace, material_angles[0], eye, m->rays, m->hits);
   if (isfinite(m->hits->t[0]))
     broken("materials", m->kind, "a ray hits it");
 }

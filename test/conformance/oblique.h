@@ -4,6 +4,7 @@
 #define TEST_CONFORMANCE_OBLIQUE_H
 
 #include "conformance.h"
+#include "math/double3.h"
 #include "transport.h"
 #include "unit.h"
 
@@ -15,17 +16,6 @@ typedef struct Oblique {
   double eye[3], right[3], up[3], forward[3];
 } Oblique;
 
-static void normalise(double v[3]) {
-  const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  for (int k = 0; k < 3; k++)
-    v[k] /= length;
-}
-
-static void cross_of(const double a[3], const double b[3], double c[3]) {
-  for (int k = 0; k < 3; k++)
-    c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static Oblique oblique_from(const double eye[3]) {
   static const double y[3] = {0, 1, 0};
   Oblique o = {0};
@@ -33,10 +23,10 @@ static Oblique oblique_from(const double eye[3]) {
     o.eye[k] = eye[k];
     o.forward[k] = -eye[k];
   }
-  normalise(o.forward);
-  cross_of(y, o.forward, o.right);
-  normalise(o.right);
-  cross_of(o.forward, o.right, o.up);
+  vl_normalize3(o.forward);
+  vl_cross3(y, o.forward, o.right);
+  vl_normalize3(o.right);
+  vl_cross3(o.forward, o.right, o.up);
   return o;
 }
 

@@ -130,6 +130,14 @@ static Stage purse_stage(Purse *purse) {
   return s;
 }
 
+/* A stage with everything, and the path of its image's file. */
+static Stage full_stage(Purse *purse, char path[600]) {
+  snprintf(path, 600, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
+  Stage s = purse_stage(purse);
+  fill(&s, path);
+  return s;
+}
+
 /* Builds with each `step`th allocation failing, from the first on, until a build has enough. */
 static void build_at_each(Stage *s, Purse *purse, long step, long least) {
   const size_t before = vl_context_memory(s->context, NULL);
@@ -161,10 +169,8 @@ static void build_at_each(Stage *s, Purse *purse, long step, long least) {
 static void build_without_memory(void **state) {
   (void)state;
   char path[600];
-  snprintf(path, sizeof path, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
   Purse purse = {-1, false};
-  Stage s = purse_stage(&purse);
-  fill(&s, path);
+  Stage s = full_stage(&purse, path);
   for (int color = 0; color < 2; color++)
     for (int sampler = 0; sampler < 2; sampler++) {
       s.build.color = (vlColorMode)color;
@@ -182,10 +188,8 @@ static void build_without_memory(void **state) {
 static void build_again_without_memory(void **state) {
   (void)state;
   char path[600];
-  snprintf(path, sizeof path, "%s/test_build_again.pfm", VELO_BINARY_DIR);
   Purse purse = {-1, false};
-  Stage s = purse_stage(&purse);
-  fill(&s, path);
+  Stage s = full_stage(&purse, path);
   s.build.accelerator = VL_ACCELERATOR_BVH;
   vlWorld *previous = NULL;
   assert_int_equal(vl_world_build(s.scene, &s.build, &previous, NULL), VL_OK);
@@ -199,18 +203,15 @@ static void build_again_without_memory(void **state) {
 static void render_without_memory(void **state) {
   (void)state;
   char path[600];
-  snprintf(path, sizeof path, "%s/test_build_memory.pfm", VELO_BINARY_DIR);
   Purse purse = {-1, false};
-  Stage s = purse_stage(&purse);
-  fill(&s, path);
+  Stage s = full_stage(&purse, path);
   remove(path);
   vlWorld *world = NULL;
   /* the file is gone */
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_ERROR_MISSING);
   assert_null(world);
   stage_close(&s);
-  s = purse_stage(&purse);
-  fill(&s, path);
+  s = full_stage(&purse, path);
   assert_int_equal(vl_world_build(s.scene, &s.build, &world, NULL), VL_OK);
   remove(path);
   vlCamera camera;

@@ -81,8 +81,8 @@ static bool put_tube(Solids *s, uint32_t from, uint32_t to, float radius) {
   double l = vl_normalize3(d);
   if (!(l > 0) || !isfinite(l))
     return true;
-  int min = vl_least_axis3(d);
-  double e[3] = {min == 0, min == 1, min == 2};
+  int axis = vl_least_axis3(d);
+  double e[3] = {axis == 0, axis == 1, axis == 2};
   vl_cross3(d, e, u);
   vl_normalize3(u);
   vl_cross3(d, u, v);

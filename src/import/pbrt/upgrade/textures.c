@@ -114,8 +114,11 @@ static bool scale_rule(vlOldStatement *s) {
 
 /* ---- mappings ---------------------------------------------------------------------------- */
 
-static bool maps(const char *name) {
-  return vl_has_word("checkerboard bilerp imagemap uv dots", name);
+static bool maps(const vlOldRow *rows) {
+  for (; rows && rows->name; rows++)
+    if (vl_has_word(rows->name, "mapping"))
+      return true;
+  return false;
 }
 
 /* pbrt-v3 ignores the numbers of other mappings; in pbrt-v4 they are errors. */
@@ -272,7 +275,7 @@ bool vl_old_texture(vlOldStatement *s) {
     return lose_numbers(s);
   if (kind && kind->lost)
     vl_old_lose(s, "%s", kind->lost);
-  if (kind && maps(s->name[2]))
+  if (kind && maps(kind->rows))
     drop_unused(s);
   if (kind && kind->rule && !kind->rule(s))
     return false;
